@@ -1,0 +1,1 @@
+//! The paper's unknown force: inverse dynamics, Fourier part and beat part.

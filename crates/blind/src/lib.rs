@@ -1,0 +1,1 @@
+//! Cases whose effect is withheld from the diagnosis, and their score.

@@ -1,0 +1,3 @@
+//! The simgap command line.
+
+fn main() {}

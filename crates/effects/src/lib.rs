@@ -1,0 +1,1 @@
+//! The catalogue of unmodelled effects: one file per effect, physical and measurement.

@@ -1,0 +1,1 @@
+//! Output-error estimation: sensitivities, priors, uncertainty.

@@ -1,0 +1,1 @@
+//! Measured records: channels, units, time base, file formats, quality checks.

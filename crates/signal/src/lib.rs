@@ -1,0 +1,1 @@
+//! Spectra, peaks, windows, order tracking, FRF estimators and agreement metrics.

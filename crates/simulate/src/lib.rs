@@ -1,0 +1,1 @@
+//! A model with its effects driven by a record: predicted outputs.

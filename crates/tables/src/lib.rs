@@ -1,0 +1,1 @@
+//! The paper's Tables 1-5 as typed data with provenance; nothing computed.
