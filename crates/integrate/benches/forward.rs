@@ -1,0 +1,4 @@
+//! Forward simulation, ns per sample.
+fn main() {
+    divan::main();
+}
