@@ -1,1 +1,38 @@
 //! Measured records: channels, units, time base, file formats, quality checks.
+//!
+//! A [`Record`] is a table of equally long columns over one evenly spaced time base. Every
+//! [`Channel`] keeps its values as they were written together with the [`Unit`] of its header;
+//! [`Channel::si_values`] converts on request and refuses a unit that does not fit the
+//! [`Quantity`] asked for. Whoever makes a record, from a file ([`read_csv`]) or from numbers
+//! ([`Record::new`]), passes the same checks, so that later crates need none of their own.
+//!
+//! ```
+//! use simgap_record::{Quantity, parse_csv};
+//!
+//! let mut text = String::from("t [ms],y [mm]\n");
+//! for k in 0..10 {
+//!     text += &format!("{k},{}\n", 0.5 * f64::from(k));
+//! }
+//! let record = parse_csv("A.csv", text.as_bytes())?;
+//! assert!((record.sample_rate_hz() - 1000.0).abs() < 1e-6);
+//! let displacement = record.require("y")?.si_values(Quantity::Displacement)?;
+//! assert_eq!(displacement[3], 1.5e-3);
+//! # Ok::<(), simgap_record::RecordError>(())
+//! ```
+
+mod channel;
+mod csv_header;
+mod csv_read;
+mod error;
+mod record;
+mod time_base;
+mod unit;
+mod write;
+
+pub use channel::{Channel, Conversion};
+pub use csv_read::{MAX_LINE_BYTES, MAX_ROWS, parse_csv, read_csv, read_csv_channels};
+pub use error::{Place, RecordError};
+pub use record::{MIN_ROWS, Record};
+pub use time_base::UNEVEN_FRACTION;
+pub use unit::{Quantity, Unit, UnitKind};
+pub use write::{ensure_writable_dir, write_csv_atomic, write_text_atomic};

@@ -1,0 +1,5 @@
+//! Reading speed; see the crate's tests for correctness.
+
+fn main() {
+    divan::main();
+}

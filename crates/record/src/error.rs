@@ -1,0 +1,384 @@
+//! What can be wrong with a record.
+
+use std::fmt;
+use std::io;
+
+use crate::{MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS, Quantity, UNEVEN_FRACTION, UnitKind};
+
+/// Where in a record a value stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Line of a file, counted from 1.
+    Line(u64),
+    /// Row of a record made in memory, counted from 0.
+    Row(usize),
+    /// Names of a record made in memory.
+    Names,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Line(line) => write!(f, "line {line}"),
+            Place::Row(row) => write!(f, "row {row}"),
+            Place::Names => f.write_str("names"),
+        }
+    }
+}
+
+/// Why a record cannot be read, made or written. Each message is one line: file, line or column,
+/// what was found, what is needed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// No file of that name.
+    #[error("{file}: no such file")]
+    NotFound {
+        /// Path as given.
+        file: String,
+    },
+    /// A directory where a file is needed.
+    #[error("{file}: is a directory, but a CSV file is needed")]
+    IsDirectory {
+        /// Path as given.
+        file: String,
+    },
+    /// The operating system refuses to read.
+    #[error("{file}: cannot be read: {source}")]
+    Unreadable {
+        /// Path as given.
+        file: String,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// Nothing in the file, not even a header.
+    #[error(
+        "{file}: the file is empty, but a header such as 't [s],u [N],y [m]' and at least \
+         {MIN_ROWS} rows are needed"
+    )]
+    Empty {
+        /// File or record.
+        file: String,
+    },
+    /// Too few rows to be a record, or none.
+    #[error("{file}: {found} row(s) of data found, but at least {MIN_ROWS} are needed")]
+    TooFewRows {
+        /// File or record.
+        file: String,
+        /// Rows found.
+        found: usize,
+    },
+    /// More rows than are read.
+    #[error(
+        "{file}: more than {MAX_ROWS} rows found, which is the limit; split the record or lower \
+         its sample rate"
+    )]
+    TooManyRows {
+        /// File or record.
+        file: String,
+    },
+    /// A line beyond any sensible length: not a table of numbers.
+    #[error(
+        "{file}: line {line}: longer than {MAX_LINE_BYTES} bytes, which is the limit; one row of \
+         numbers per line is needed"
+    )]
+    LongLine {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+    },
+    /// Bytes that are not UTF-8 text.
+    #[error("{file}: line {line}: not UTF-8 text; save the file as CSV in UTF-8")]
+    NotUtf8 {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+    },
+    /// Columns or lines separated by something else.
+    #[error(
+        "{file}: line {line}: {found} found, but {needed} are needed (and a point as decimal sign)"
+    )]
+    Separator {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// What separates here.
+        found: &'static str,
+        /// What has to separate.
+        needed: &'static str,
+    },
+    /// A quotation mark that is opened and not closed on its line.
+    #[error("{file}: line {line}: a quotation mark is not closed on this line")]
+    OpenQuote {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+    },
+    /// A header cell without a unit in brackets.
+    #[error(
+        "{file}: line {line}: column {column} is headed '{found}', but a name and a unit in \
+         brackets are needed, such as 'y [mm]' ('y [-]' if it has none)"
+    )]
+    MissingUnit {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// Column, counted from 1.
+        column: usize,
+        /// The header cell.
+        found: String,
+    },
+    /// Two columns of one name.
+    #[error(
+        "{file}: {at}: columns {first} and {second} are both named '{name}'; names must differ"
+    )]
+    DuplicateColumn {
+        /// File or record.
+        file: String,
+        /// Header line.
+        at: Place,
+        /// The name.
+        name: String,
+        /// First column of that name, counted from 1.
+        first: usize,
+        /// Second column of that name, counted from 1.
+        second: usize,
+    },
+    /// No column of time stamps.
+    #[error(
+        "{file}: line {line}: no time column found among {has}; a column 't [s]' or 'time [s]' is \
+         needed"
+    )]
+    NoTimeColumn {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// The columns there are.
+        has: String,
+    },
+    /// A time column whose unit is no time.
+    #[error(
+        "{file}: line {line}: time column '{name}' is in [{unit}], but s, ms, us or min is needed"
+    )]
+    TimeUnit {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// Name of the time column.
+        name: String,
+        /// Its unit.
+        unit: String,
+    },
+    /// A row with more or fewer cells than the header.
+    #[error("{file}: line {line}: {found} cells found, but the header has {needed}")]
+    CellCount {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// Cells in this row.
+        found: usize,
+        /// Cells in the header.
+        needed: usize,
+    },
+    /// An empty cell.
+    #[error("{file}: line {line}: column '{column}' is empty, but a number is needed")]
+    MissingCell {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// Name of the column.
+        column: String,
+    },
+    /// Text that is not a number.
+    #[error("{file}: line {line}: column '{column}' holds '{found}', but a number is needed")]
+    NotANumber {
+        /// File or record.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// Name of the column.
+        column: String,
+        /// The text, shortened.
+        found: String,
+    },
+    /// NaN, an infinity, or a number too large for a double.
+    #[error("{file}: {at}: column '{column}' holds '{found}', but a finite number is needed")]
+    NotFinite {
+        /// File or record.
+        file: String,
+        /// Line or row.
+        at: Place,
+        /// Name of the column.
+        column: String,
+        /// The text or the value.
+        found: String,
+    },
+    /// Time that stands still or runs backwards.
+    #[error(
+        "{file}: {at}: time goes from {previous} s to {found} s, but every stamp must be later \
+         than the one before (repeated stamps often have too few decimals)"
+    )]
+    TimeOrder {
+        /// File or record.
+        file: String,
+        /// Line or row of the later stamp.
+        at: Place,
+        /// The stamp before, s.
+        previous: f64,
+        /// The stamp, s.
+        found: f64,
+    },
+    /// A time base that is not evenly spaced.
+    #[error(
+        "{file}: {at}: the time step is {found:.6e} s here and {usual:.6e} s elsewhere, but even \
+         spacing is needed (every stamp within {UNEVEN_FRACTION} of a step of a uniform grid); \
+         resample or split the record"
+    )]
+    UnevenTime {
+        /// File or record.
+        file: String,
+        /// Line or row of the stamp that ends the step.
+        at: Place,
+        /// Step here, s.
+        found: f64,
+        /// Median step of the record, s.
+        usual: f64,
+    },
+    /// A time base for a generated record that is none.
+    #[error(
+        "{file}: a start of {start_s} s and a step of {time_step_s} s found, but a finite start \
+         and a finite positive step are needed"
+    )]
+    TimeStep {
+        /// Record.
+        file: String,
+        /// Start found, s.
+        start_s: f64,
+        /// Step found, s.
+        time_step_s: f64,
+    },
+    /// A channel that is not as long as the time base.
+    #[error("{file}: column '{column}' has {found} values, but there are {needed} time stamps")]
+    LengthMismatch {
+        /// Record or file to be written.
+        file: String,
+        /// Name of the column.
+        column: String,
+        /// Values found.
+        found: usize,
+        /// Time stamps.
+        needed: usize,
+    },
+    /// A range of rows that is not in the record.
+    #[error("{file}: rows {start} to {end} asked for, but the record has {len}")]
+    RowRange {
+        /// Record.
+        file: String,
+        /// First row asked for.
+        start: usize,
+        /// Row behind the last asked for.
+        end: usize,
+        /// Rows there are.
+        len: usize,
+    },
+    /// A column that is needed and not there.
+    #[error("{file}: column '{wanted}' is needed, but the file has {has}")]
+    MissingColumn {
+        /// File or record.
+        file: String,
+        /// The name needed.
+        wanted: String,
+        /// The columns there are.
+        has: String,
+    },
+    /// A unit that does not measure what the model takes from the channel.
+    #[error(
+        "column '{channel}' is in [{unit}], which is {kind}, but {wanted} is needed ({}), or a \
+         gain in the model",
+        wanted.examples()
+    )]
+    UnitMismatch {
+        /// Name of the column.
+        channel: String,
+        /// Its unit.
+        unit: String,
+        /// What that unit measures.
+        kind: UnitKind,
+        /// What is needed.
+        wanted: Quantity,
+    },
+    /// An error of a channel, with the record it stands in.
+    #[error("{file}: {source}")]
+    InRecord {
+        /// File or record.
+        file: String,
+        /// What is wrong there.
+        source: Box<RecordError>,
+    },
+    /// Headers and columns to be written do not pair up.
+    #[error("{file}: {headers} headers given for {columns} columns to be written")]
+    HeaderCount {
+        /// File to be written.
+        file: String,
+        /// Headers given.
+        headers: usize,
+        /// Columns given.
+        columns: usize,
+    },
+    /// A file where a directory is needed.
+    #[error("{path}: is a file, but a directory is needed")]
+    NotADirectory {
+        /// Path as given.
+        path: String,
+    },
+    /// The operating system refuses to write.
+    #[error("{path}: cannot be written: {source}")]
+    Unwritable {
+        /// Path as given.
+        path: String,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+/// Names as a list for a message; a long list is cut.
+pub(crate) fn name_list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    const SHOWN: usize = 12;
+    let names: Vec<&str> = names.collect();
+    if names.is_empty() {
+        return "no others".to_owned();
+    }
+    let mut list = names
+        .iter()
+        .take(SHOWN)
+        .map(|name| format!("'{}'", shortened(name)))
+        .collect::<Vec<_>>()
+        .join(", ");
+    if names.len() > SHOWN {
+        list += &format!(" and {} more", names.len() - SHOWN);
+    }
+    list
+}
+
+/// Text from a file as it may stand in a message: one line, not too long.
+pub(crate) fn shortened(text: &str) -> String {
+    const SHOWN: usize = 40;
+    let mut short: String = text
+        .chars()
+        .take(SHOWN)
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    if text.chars().nth(SHOWN).is_some() {
+        short.push('…');
+    }
+    short
+}
