@@ -1,0 +1,188 @@
+//! The model file (TOML, schema `simgap-model/1`): text to [`Model`] and back.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError, Output, Pendulum, Spring,
+};
+
+/// The schema this version reads and writes.
+pub const SCHEMA: &str = "simgap-model/1";
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ModelFile {
+    schema: String,
+    name: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    mass: Vec<Mass>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    spring: Vec<Spring>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    damper: Vec<Damper>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    input: Vec<Input>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    output: Vec<Output>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    load: Vec<Load>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pendulum: Vec<Pendulum>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    effect: Vec<EffectFile>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct EffectFile {
+    kind: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    between: Option<[String; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    mass: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    input: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    channel: Option<String>,
+    #[serde(flatten)]
+    parameters: BTreeMap<String, f64>,
+}
+
+impl EffectFile {
+    fn into_entry(self, index: usize) -> Result<EffectEntry, ModelError> {
+        let places = [
+            self.between.map(Location::Between),
+            self.mass.map(Location::Mass),
+            self.input.map(Location::Input),
+            self.channel.map(Location::Channel),
+        ];
+        let mut found: Vec<Location> = places.into_iter().flatten().collect();
+        match (found.pop(), found.is_empty()) {
+            (Some(at), true) => Ok(EffectEntry {
+                kind: self.kind,
+                at,
+                parameters: self.parameters,
+            }),
+            (one, _) => Err(ModelError::Shape {
+                place: format!("[[effect]] {} \"{}\"", index + 1, self.kind),
+                found: if one.is_none() {
+                    "no place is given".into()
+                } else {
+                    "several places are given".into()
+                },
+                needed: "exactly one of between, mass, input, channel".into(),
+            }),
+        }
+    }
+
+    fn from_entry(entry: &EffectEntry) -> EffectFile {
+        let mut file = EffectFile {
+            kind: entry.kind.clone(),
+            between: None,
+            mass: None,
+            input: None,
+            channel: None,
+            parameters: entry.parameters.clone(),
+        };
+        match entry.at.clone() {
+            Location::Between(pair) => file.between = Some(pair),
+            Location::Mass(mass) => file.mass = Some(mass),
+            Location::Input(channel) => file.input = Some(channel),
+            Location::Channel(channel) => file.channel = Some(channel),
+        }
+        file
+    }
+}
+
+fn line_of(text: &str, offset: usize) -> usize {
+    1 + text
+        .as_bytes()
+        .iter()
+        .take(offset)
+        .filter(|&&b| b == b'\n')
+        .count()
+}
+
+impl Model {
+    /// Reads a model from the text of a model file and checks it.
+    ///
+    /// # Errors
+    /// [`ModelError`] with the line (syntax) or the table and item (meaning).
+    ///
+    /// ```
+    /// use simgap_model::Model;
+    /// let text = r#"
+    /// schema = "simgap-model/1"
+    /// name = "axis"
+    /// [[mass]]
+    /// name = "carriage"
+    /// value = 95.0
+    /// [[output]]
+    /// channel = "q"
+    /// kind = "displacement"
+    /// at = "carriage"
+    /// "#;
+    /// let model = Model::from_toml(text)?;
+    /// assert_eq!(model.masses[0].value, 95.0);
+    /// # Ok::<(), simgap_model::ModelError>(())
+    /// ```
+    pub fn from_toml(text: &str) -> Result<Model, ModelError> {
+        let file: ModelFile = toml::from_str(text).map_err(|error| ModelError::Syntax {
+            line: error.span().map_or(1, |span| line_of(text, span.start)),
+            found: error
+                .message()
+                .split_whitespace()
+                .collect::<Vec<_>>()
+                .join(" "),
+        })?;
+        if file.schema != SCHEMA {
+            return Err(ModelError::Schema {
+                found: file.schema,
+                needed: SCHEMA,
+            });
+        }
+        let effects = file
+            .effect
+            .into_iter()
+            .enumerate()
+            .map(|(i, effect)| effect.into_entry(i))
+            .collect::<Result<Vec<_>, _>>()?;
+        let model = Model {
+            name: file.name,
+            masses: file.mass,
+            springs: file.spring,
+            dampers: file.damper,
+            inputs: file.input,
+            outputs: file.output,
+            loads: file.load,
+            pendulums: file.pendulum,
+            effects,
+        };
+        model.check()?;
+        Ok(model)
+    }
+
+    /// Writes the model as the text of a model file; [`Model::from_toml`] reads it back unchanged.
+    ///
+    /// # Errors
+    /// [`ModelError::Syntax`] when the model cannot be written as TOML.
+    pub fn to_toml(&self) -> Result<String, ModelError> {
+        let file = ModelFile {
+            schema: SCHEMA.into(),
+            name: self.name.clone(),
+            mass: self.masses.clone(),
+            spring: self.springs.clone(),
+            damper: self.dampers.clone(),
+            input: self.inputs.clone(),
+            output: self.outputs.clone(),
+            load: self.loads.clone(),
+            pendulum: self.pendulums.clone(),
+            effect: self.effects.iter().map(EffectFile::from_entry).collect(),
+        };
+        toml::to_string(&file).map_err(|error| ModelError::Syntax {
+            line: 0,
+            found: error.to_string(),
+        })
+    }
+}
