@@ -62,9 +62,6 @@ pub(crate) fn parse_header(
     cells: &[String],
     wanted: Option<&[&str]>,
 ) -> Result<Header, RecordError> {
-    if let [only] = cells {
-        check_separator(file, line, only)?;
-    }
     let cells: Vec<Cell<'_>> = cells.iter().map(|cell| Cell::parse(cell)).collect();
     let time_index = time_column(file, line, &cells)?;
     let time = column(file, line, &cells, time_index)?;
@@ -147,14 +144,15 @@ fn column(file: &str, line: u64, cells: &[Cell<'_>], index: usize) -> Result<Col
     }
 }
 
-/// A header of one cell may be one that is separated by something else.
-fn check_separator(file: &str, line: u64, header: &str) -> Result<(), RecordError> {
-    let (found, needed) = if header.contains(';') {
-        ("semicolons", "commas")
-    } else if header.contains('\t') {
-        ("tabs", "commas")
-    } else if header.contains('\r') {
+/// Refuses a header whose cells or lines are separated by something else.
+pub(crate) fn check_separator(file: &str, line: u64, header: &str) -> Result<(), RecordError> {
+    let one_cell = !header.contains(',');
+    let (found, needed) = if header.contains('\r') {
         ("carriage returns alone at the ends of lines", "line feeds")
+    } else if one_cell && header.contains(';') {
+        ("semicolons", "commas")
+    } else if one_cell && header.contains('\t') {
+        ("tabs", "commas")
     } else {
         return Ok(());
     };

@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use crate::Channel;
-use crate::csv_header::{Header, parse_header};
+use crate::csv_header::{Header, check_separator, parse_header};
 use crate::error::{Place, RecordError, shortened};
 use crate::record::{Origin, Record};
 
@@ -171,6 +171,7 @@ impl<'a, R: BufRead> Reader<'a, R> {
             if text.is_empty() {
                 continue;
             }
+            check_separator(self.label, self.line, text)?;
             let cells = if text.contains('"') {
                 self.quoted_cells(text)?
             } else {

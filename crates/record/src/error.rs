@@ -239,9 +239,10 @@ pub enum RecordError {
     },
     /// A time base that is not evenly spaced.
     #[error(
-        "{file}: {at}: the time step is {found:.6e} s here and {usual:.6e} s elsewhere, but even \
+        "{file}: {at}: the time step is {} s here and {} s elsewhere, but even \
          spacing is needed (every stamp within {UNEVEN_FRACTION} of a step of a uniform grid); \
-         resample or split the record"
+         resample or split the record",
+        digits(*found), digits(*usual)
     )]
     UnevenTime {
         /// File or record.
@@ -348,6 +349,11 @@ pub enum RecordError {
         /// What the system says.
         source: io::Error,
     },
+}
+
+/// A number with the digits that matter in a message.
+pub(crate) fn digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 /// Names as a list for a message; a long list is cut.

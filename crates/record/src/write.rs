@@ -48,23 +48,24 @@ pub fn write_csv_atomic(
         });
     }
     let needed = columns.first().map_or(0, |column| column.len());
-    for (header, column) in headers.iter().zip(columns) {
-        let (column_name, found) = (header.clone(), column.len());
-        if found != needed {
-            let column = column_name;
-            return Err(RecordError::LengthMismatch {
-                file: file(),
-                column,
-                found,
-                needed,
-            });
-        }
+    let named = || headers.iter().zip(columns);
+    if let Some((header, column)) = named().find(|(_, column)| column.len() != needed) {
+        let (column, found) = (header.clone(), column.len());
+        return Err(RecordError::LengthMismatch {
+            file: file(),
+            column,
+            found,
+            needed,
+        });
+    }
+    for (header, column) in named() {
         if let Some(row) = column.iter().position(|value| !value.is_finite()) {
+            let (column, found) = (header.clone(), column[row].to_string());
             return Err(RecordError::NotFinite {
                 file: file(),
                 at: Place::Row(row),
-                column: column_name,
-                found: column[row].to_string(),
+                column,
+                found,
             });
         }
     }
@@ -149,7 +150,10 @@ fn new_file_in(dir: &Path) -> io::Result<tempfile::NamedTempFile> {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(dir)
+    // Without the random name of the file beside: a message repeats itself to the letter.
+    builder
+        .tempfile_in(dir)
+        .map_err(|refused| io::Error::from(refused.kind()))
 }
 
 /// Makes sure that files can be written to a directory; creates it and its parents if needed.
