@@ -180,8 +180,8 @@ impl Unit {
 
     /// One value in SI units.
     ///
-    /// Divides where the inverse factor is a whole number, so that 12.3 mm becomes exactly the
-    /// double nearest to 0.0123 (10^-3 itself is not a double, 10^3 is).
+    /// Divides where the inverse factor is a whole number: one rounding instead of two (10^-3 is
+    /// not a double, 10^3 is), so that 9 mm becomes the double nearest to 0.009.
     #[must_use]
     pub fn to_si(&self, value: f64) -> f64 {
         match whole_inverse(self.si_factor) {

@@ -111,12 +111,12 @@ fn verify_look_alikes_are_told_apart() {
     }
 }
 
+/// Multiplied by the double next to 0.001, many would miss it.
 #[test]
-fn verify_decimal_units_convert_without_stray_digits() {
-    for thousandths in 0..100_000 {
-        let written = f64::from(thousandths) / 1000.0;
-        let nearest: f64 = format!("{written}e-3").parse().unwrap_or(f64::NAN);
-        assert_eq!(Unit::parse("mm").to_si(written), nearest);
+fn verify_whole_millimetres_become_the_nearest_double() {
+    for millimetres in 0..10_000 {
+        let nearest: f64 = format!("{millimetres}e-3").parse().unwrap_or(f64::NAN);
+        assert_eq!(Unit::parse("mm").to_si(f64::from(millimetres)), nearest);
     }
 }
 
