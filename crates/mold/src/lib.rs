@@ -1,1 +1,24 @@
 //! The mold oscillator of the paper: one and two degrees of freedom, and its records rebuilt from the tables.
+//!
+//! - [`OneDof`]: Eq. (1)-(3) with Table 1.
+//! - [`TwoDof`]: Eq. (4) with Table 5 as printed, and [`TwoDof::restored`], the same masses and k₁
+//!   with k_leaf and k₂ solved so that the modes lie where the paper wants them.
+//! - [`RebuiltRecord`]: the measured data is lost; these records follow the printed numbers and say
+//!   so. Each of the two readings of the 50 − f lines ([`Reading`]) can be built at any sample rate.
+//!
+//! Source of every published number: `park-mold`, through [`simgap_tables`].
+
+mod error;
+mod noise;
+mod one_dof;
+mod rebuild;
+mod restored;
+mod two_dof;
+
+pub use error::MoldError;
+pub use one_dof::{OneDof, STANDARD_GRAVITY};
+pub use rebuild::{
+    DISPLACEMENT_CHANNEL, FORCE_CHANNEL, HARMONIC_SHARE, Reading, RebuildPlan, RebuiltRecord,
+    published_line_amplitude, published_plan, rebuild,
+};
+pub use two_dof::TwoDof;
