@@ -216,7 +216,11 @@ fn regress_gain_and_phase_up_to_nyquist() {
             let phase = if ratio.norm() < 1e-12 {
                 "-".to_owned()
             } else {
-                format!("{:.3}", ratio.arg().to_degrees())
+                // Rounded first, so that a rounding error does not show as a minus sign.
+                format!(
+                    "{:.3}",
+                    (ratio.arg().to_degrees() * 1e3).round() / 1e3 + 0.0
+                )
             };
             table += &format!("  {:>8.5} {phase:>8}", ratio.norm());
         }

@@ -31,3 +31,31 @@ impl Normal {
         radius * (std::f64::consts::TAU * self.uniform()).cos()
     }
 }
+
+/// A one degree of freedom structure of unit mass: ẍ + 2ζω ẋ + ω² x.
+pub fn oscillator(natural_freq_rad: f64, damping_ratio: f64) -> simgap_model::StructuralMatrices {
+    simgap_model::StructuralMatrices {
+        mass_matrix: faer::mat![[1.0]],
+        damping_matrix: faer::mat![[2.0 * damping_ratio * natural_freq_rad]],
+        stiffness_matrix: faer::mat![[natural_freq_rad * natural_freq_rad]],
+    }
+}
+
+/// Closed form of free decay: x and ẋ at t for any damping ratio, and any initial state.
+pub fn free_decay(omega: f64, zeta: f64, x0: f64, v0: f64, t: f64) -> (f64, f64) {
+    let decay = (-zeta * omega * t).exp();
+    let slope = v0 + zeta * omega * x0;
+    // x = e^(−ζωt) (x0 c + slope s), with c' = ± r² s and s' = c.
+    let (c, s, square) = if zeta < 1.0 {
+        let r = omega * (1.0 - zeta * zeta).sqrt();
+        ((r * t).cos(), (r * t).sin() / r, -r * r)
+    } else if zeta == 1.0 {
+        (1.0, t, 0.0)
+    } else {
+        let r = omega * (zeta * zeta - 1.0).sqrt();
+        ((r * t).cosh(), (r * t).sinh() / r, r * r)
+    };
+    let x = decay * (x0 * c + slope * s);
+    let v = decay * (x0 * square * s + slope * c) - zeta * omega * x;
+    (x, v)
+}

@@ -1,0 +1,83 @@
+//! From forces to motion.
+
+mod balance;
+mod generalized_alpha;
+mod implicit;
+mod lu;
+mod park;
+mod runge_kutta;
+
+pub use generalized_alpha::{GeneralizedAlpha, Newmark, generalized_alpha, newmark};
+pub use park::park;
+pub use runge_kutta::runge_kutta;
+
+use balance::{Balance, Instant};
+use implicit::Predictor;
+
+use crate::error::{IntegrateError, Result};
+use crate::motion::{Motion, Solution};
+use crate::problem::{Problem, TimeGrid};
+
+/// A method of integration with its parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// [`park`].
+    Park,
+    /// [`newmark`].
+    Newmark(Newmark),
+    /// [`generalized_alpha`].
+    GeneralizedAlpha(GeneralizedAlpha),
+    /// [`runge_kutta`].
+    RungeKutta4,
+}
+
+/// Simulates a problem on a time grid by the method named.
+///
+/// # Errors
+///
+/// Those of the method.
+///
+/// ```
+/// use faer::mat;
+/// use simgap_integrate::{Method, Problem, TimeGrid, simulate};
+/// # use simgap_model::StructuralMatrices;
+/// # let matrices = StructuralMatrices {
+/// #     mass_matrix: mat![[1.0]], damping_matrix: mat![[0.0]], stiffness_matrix: mat![[1.0]],
+/// # };
+/// let problem = Problem::new(&matrices)?.with_initial_state(&[0.0], &[1.0])?;
+/// let solution = simulate(&problem, &TimeGrid::new(0.0, 0.01, 101)?, Method::Park)?;
+/// assert!((solution.motion.displacement[(0, 100)] - 1.0_f64.sin()).abs() < 1e-4);
+/// # Ok::<(), simgap_integrate::IntegrateError>(())
+/// ```
+pub fn simulate(problem: &Problem<'_>, grid: &TimeGrid, method: Method) -> Result<Solution> {
+    match method {
+        Method::Park => park(problem, grid),
+        Method::Newmark(parameters) => newmark(problem, grid, parameters),
+        Method::GeneralizedAlpha(parameters) => generalized_alpha(problem, grid, parameters),
+        Method::RungeKutta4 => runge_kutta(problem, grid),
+    }
+}
+
+/// The motion with its first sample, and the state there; the acceleration is that of equilibrium.
+fn start_motion(balance: &mut Balance<'_, '_>, grid: &TimeGrid) -> (Motion, Predictor) {
+    let problem = balance.problem;
+    let mut state = Predictor::zeros(problem.dof_count());
+    state.x.copy_from_slice(problem.initial_displacement());
+    state.v.copy_from_slice(problem.initial_velocity());
+    balance.acceleration(Instant::new(grid, 0, 0.0), &state.x, &state.v, &mut state.a);
+    let mut motion = Motion::zeros(problem.dof_count(), grid);
+    motion.record(0, &state.x, &state.v, &state.a);
+    (motion, state)
+}
+
+/// Refuses a state that has left the range of numbers.
+fn check_finite_motion(grid: &TimeGrid, sample: usize, state: &Predictor) -> Result<()> {
+    let sum: f64 = state.x.iter().chain(&state.v).chain(&state.a).sum();
+    if sum.is_finite() {
+        return Ok(());
+    }
+    Err(IntegrateError::Unstable {
+        time_s: grid.time_s(sample),
+        time_step_s: grid.time_step_s / grid.substeps as f64,
+    })
+}
