@@ -1,0 +1,457 @@
+//! Marching through a sampled excitation: the linear part exactly, nonlinear forces on top.
+//!
+//! Over each step the single-valued nonlinear forces S vary linearly between their values at the
+//! two ends, as the excitation does; dry forces D keep their end value:
+//!
+//! ```text
+//! z₁ = Φ z₀ + Γ₀ (f₀ − E S₀) + Γ₁ (f₁ − E S₁) − (Γ₀ + Γ₁) E D₁                 (1)
+//! d = Eᵀ x,  v = Eᵀ ẋ                    motion across the elements             (2)
+//! S₁ = φ(d₁, v₁, t₁)                                                            (3)
+//! D₁ ∈ level(|v₁|) Sgn(v₁)                                                      (4)
+//! ```
+//!
+//! (3) is second order in h. (4) is the non-smooth step of Moreau: sliding friction of constant
+//! level is exact, sticking holds v₁ = 0 without a regularising slope, and D constant over the
+//! step keeps the trapezoidal rule from ringing while it sticks. Through (1) each element sees
+//! its own force: d₁ = d* − C S₁ − G D₁, so that (3) is a scalar equation solved by the secant
+//! method and (4) a projection; several elements are swept until they agree.
+//!
+//! References: \[Moreau1988\]; \[Hochbruck2010\], section 2.
+
+use simgap_model::Node;
+
+use super::law::{Element, MemberMotion};
+use super::propagator::ExactPropagator;
+
+/// A sampled excitation; values between samples are interpolated linearly.
+#[derive(Debug, Clone, Copy)]
+pub struct Excitation<'a> {
+    /// Force on each degree of freedom, N; samples × n, row-major.
+    pub dof_force: &'a [f64],
+    /// Displacement of each base node, m; samples × bases, row-major.
+    pub base_displacement: &'a [f64],
+    /// Velocity of each base node, m/s; samples × bases, row-major.
+    pub base_velocity: &'a [f64],
+    /// Number of base nodes.
+    pub base_count: usize,
+    /// Number of samples.
+    pub sample_count: usize,
+    /// Time of the first sample on the clock of the record, s.
+    pub start_s: f64,
+    /// Steps of the propagator between two samples, at least 1.
+    pub substeps: usize,
+}
+
+/// The plant at one sample.
+#[derive(Debug, Clone, Copy)]
+pub struct Snapshot<'a> {
+    /// Index of the sample.
+    pub sample: usize,
+    /// x, m; length n.
+    pub displacement: &'a [f64],
+    /// ẋ, m/s; length n.
+    pub velocity: &'a [f64],
+    /// Force on each degree of freedom, nonlinear forces included, N; length n.
+    pub dof_force: &'a [f64],
+    /// Force each element carries, N.
+    pub element_force: &'a [f64],
+}
+
+impl ExactPropagator {
+    /// Acceleration at a sample, `M⁻¹ (f − C ẋ − K x)`, m/s², written to `acceleration`.
+    pub fn acceleration(&self, at: &Snapshot<'_>, acceleration: &mut [f64]) {
+        let n = self.dof_count;
+        for (i, out) in acceleration.iter_mut().enumerate().take(n) {
+            *out = 0.0;
+            for j in 0..n {
+                let mut net = at.dof_force[j];
+                for k in 0..n {
+                    net -= self.stiffness[j * n + k] * at.displacement[k]
+                        + self.damping[j * n + k] * at.velocity[k];
+                }
+                *out += self.inverse_mass[i * n + j] * net;
+            }
+        }
+    }
+
+    /// Marches from `displacement` and `velocity` at the first sample through the excitation and
+    /// hands every sample to `observe`.
+    ///
+    /// The propagator's step must be the sample interval divided by `substeps`; slices shorter
+    /// than the counts say end the march at the last whole sample.
+    pub fn march(
+        &self,
+        elements: &[Element],
+        excitation: &Excitation<'_>,
+        displacement: &[f64],
+        velocity: &[f64],
+        observe: &mut dyn FnMut(&Snapshot<'_>),
+    ) {
+        let mut state: Vec<f64> = displacement.iter().chain(velocity).copied().collect();
+        state.resize(2 * self.dof_count, 0.0);
+        let mut plant = Plant::new(self, elements);
+        // A count known to the compiler unrolls the small matrix products.
+        match self.dof_count {
+            0 => plant.run(0, excitation, &mut state, observe),
+            1 => plant.run(1, excitation, &mut state, observe),
+            2 => plant.run(2, excitation, &mut state, observe),
+            3 => plant.run(3, excitation, &mut state, observe),
+            4 => plant.run(4, excitation, &mut state, observe),
+            n => plant.run(n, excitation, &mut state, observe),
+        }
+    }
+}
+
+/// Sweeps over several elements before the step is taken as it stands. Contraction per sweep is
+/// the coupling through the masses within one step, far below one.
+const SWEEPS: usize = 8;
+/// Secant iterations on (3); smooth laws need two, a hard stop a few more.
+const SECANT_STEPS: usize = 12;
+/// Relative accuracy of the element forces.
+const FORCE_TOLERANCE: f64 = 1e-10;
+
+/// How the forces of element j move element i within one step, E and Γ folded.
+struct Compliance {
+    /// C: displacement of i per S of j.
+    displacement: Vec<f64>,
+    /// C: velocity of i per S of j.
+    velocity: Vec<f64>,
+    /// G: displacement of i per D of j.
+    dry_displacement: Vec<f64>,
+    /// G: velocity of i per D of j.
+    dry_velocity: Vec<f64>,
+}
+
+struct Plant<'a> {
+    propagator: &'a ExactPropagator,
+    elements: &'a [Element],
+    compliance: Compliance,
+    dry: Vec<bool>,
+    /// S of each element at the end of the last step.
+    smooth: Vec<f64>,
+    /// D of each element over the last step.
+    dry_force: Vec<f64>,
+    free_displacement: Vec<f64>,
+    free_velocity: Vec<f64>,
+}
+
+fn project(node: Node, values: &[f64], bases: &[f64]) -> f64 {
+    match node {
+        Node::Ground => 0.0,
+        Node::Dof(i) => values[i],
+        Node::Base(i) => bases[i],
+    }
+}
+
+fn spread(element: &Element, force: f64, dof_force: &mut [f64]) {
+    if let Node::Dof(i) = element.a {
+        dof_force[i] -= force;
+    }
+    if let Node::Dof(i) = element.b {
+        dof_force[i] += force;
+    }
+}
+
+impl<'a> Plant<'a> {
+    fn new(propagator: &'a ExactPropagator, elements: &'a [Element]) -> Plant<'a> {
+        let (n, m) = (propagator.dof_count, elements.len());
+        let sum: Vec<f64> = propagator
+            .gamma0
+            .iter()
+            .zip(&propagator.gamma1)
+            .map(|(a, b)| a + b)
+            .collect();
+        let fold = |gamma: &[f64], offset: usize| -> Vec<f64> {
+            let mut folded = vec![0.0; m * m];
+            let mut column = vec![0.0; n];
+            for j in 0..m {
+                column.fill(0.0);
+                spread(&elements[j], 1.0, &mut column);
+                let moved: Vec<f64> = (0..n)
+                    .map(|i| {
+                        (0..n)
+                            .map(|k| gamma[(offset + i) * n + k] * column[k])
+                            .sum()
+                    })
+                    .collect();
+                for i in 0..m {
+                    let at = |node| {
+                        if let Node::Dof(k) = node {
+                            moved[k]
+                        } else {
+                            0.0
+                        }
+                    };
+                    // Pushed by −E: a positive force moves its own element back.
+                    folded[i * m + j] = -(at(elements[i].a) - at(elements[i].b));
+                }
+            }
+            folded
+        };
+        Plant {
+            compliance: Compliance {
+                displacement: fold(&propagator.gamma1, 0),
+                velocity: fold(&propagator.gamma1, n),
+                dry_displacement: fold(&sum, 0),
+                dry_velocity: fold(&sum, n),
+            },
+            propagator,
+            elements,
+            dry: elements
+                .iter()
+                .map(|e| e.law.dry_level(0.0).is_some())
+                .collect(),
+            smooth: vec![0.0; m],
+            dry_force: vec![0.0; m],
+            free_displacement: vec![0.0; m],
+            free_velocity: vec![0.0; m],
+        }
+    }
+
+    #[inline(always)]
+    fn run(
+        &mut self,
+        n: usize,
+        excitation: &Excitation<'_>,
+        state: &mut [f64],
+        observe: &mut dyn FnMut(&Snapshot<'_>),
+    ) {
+        let m = self.elements.len();
+        let bases = excitation.base_count;
+        let substeps = excitation.substeps.max(1);
+        let h = self.propagator.time_step_s;
+        let (phi, gamma0, gamma1) = (
+            &self.propagator.phi,
+            &self.propagator.gamma0,
+            &self.propagator.gamma1,
+        );
+        let mut before = vec![0.0; n];
+        let mut after = vec![0.0; n];
+        let mut next = vec![0.0; 2 * n];
+        let mut net = vec![0.0; n];
+        let mut base = vec![0.0; 2 * bases];
+        let mut carried = vec![0.0; m];
+
+        for sample in 0..excitation.sample_count {
+            let (Some(force), Some(base_x), Some(base_v)) = (
+                excitation.dof_force.get(sample * n..(sample + 1) * n),
+                excitation
+                    .base_displacement
+                    .get(sample * bases..(sample + 1) * bases),
+                excitation
+                    .base_velocity
+                    .get(sample * bases..(sample + 1) * bases),
+            ) else {
+                return;
+            };
+            if sample > 0 {
+                let from = (sample - 1) * n;
+                let base_from = (sample - 1) * bases;
+                for sub in 1..=substeps {
+                    // Fractions of the sample interval at the two ends of this step.
+                    let start = (sub - 1) as f64 / substeps as f64;
+                    let end = sub as f64 / substeps as f64;
+                    for i in 0..n {
+                        let (f0, f1) = (excitation.dof_force[from + i], force[i]);
+                        before[i] = f0 + start * (f1 - f0);
+                        after[i] = f0 + end * (f1 - f0);
+                    }
+                    for (element, &s) in self.elements.iter().zip(&self.smooth) {
+                        spread(element, s, &mut before);
+                    }
+                    // (1) without S₁ and D₁
+                    for i in 0..2 * n {
+                        let mut sum = 0.0;
+                        for j in 0..2 * n {
+                            sum += phi[i * 2 * n + j] * state[j];
+                        }
+                        for j in 0..n {
+                            sum += gamma0[i * n + j] * before[j] + gamma1[i * n + j] * after[j];
+                        }
+                        next[i] = sum;
+                    }
+                    if m > 0 {
+                        for i in 0..bases {
+                            let x0 = excitation.base_displacement[base_from + i];
+                            let v0 = excitation.base_velocity[base_from + i];
+                            base[i] = x0 + end * (base_x[i] - x0);
+                            base[bases + i] = v0 + end * (base_v[i] - v0);
+                        }
+                        let steps = ((sample - 1) * substeps + sub) as f64;
+                        self.solve(&next, &base, excitation.start_s + steps * h);
+                        self.push(n, &mut next, &mut net);
+                    }
+                    state.copy_from_slice(&next);
+                }
+            } else if m > 0 {
+                base[..bases].copy_from_slice(base_x);
+                base[bases..].copy_from_slice(base_v);
+                self.begin(n, state, force, &base, excitation.start_s);
+            }
+            net.copy_from_slice(force);
+            for i in 0..m {
+                carried[i] = self.smooth[i] + self.dry_force[i];
+                spread(&self.elements[i], carried[i], &mut net);
+            }
+            observe(&Snapshot {
+                sample,
+                displacement: &state[..n],
+                velocity: &state[n..],
+                dof_force: &net,
+                element_force: &carried,
+            });
+        }
+    }
+
+    /// Forces at the first sample, where the motion is given.
+    fn begin(&mut self, n: usize, state: &[f64], force: &[f64], base: &[f64], time_s: f64) {
+        let bases = base.len() / 2;
+        for (i, element) in self.elements.iter().enumerate() {
+            let across = |values: &[f64], base: &[f64]| {
+                project(element.a, values, base) - project(element.b, values, base)
+            };
+            let motion = MemberMotion {
+                displacement: across(&state[..n], &base[..bases]),
+                velocity: across(&state[n..2 * n], &base[bases..]),
+                time_s,
+            };
+            self.smooth[i] = element.law.force(motion);
+            let level = element.law.dry_level(motion.velocity.abs()).unwrap_or(0.0);
+            // At rest the dry force balances what it can of the excitation across it.
+            let at_rest = across(force, &vec![0.0; bases]).clamp(-level, level);
+            self.dry_force[i] = if motion.velocity == 0.0 {
+                at_rest
+            } else {
+                level * motion.velocity.signum()
+            };
+        }
+    }
+
+    /// Solves (3) and (4) for the forces at the end of the step.
+    #[inline(always)]
+    fn solve(&mut self, free: &[f64], base: &[f64], time_s: f64) {
+        let n = free.len() / 2;
+        let bases = base.len() / 2;
+        let m = self.elements.len();
+        for (i, element) in self.elements.iter().enumerate() {
+            self.free_displacement[i] = project(element.a, &free[..n], &base[..bases])
+                - project(element.b, &free[..n], &base[..bases]);
+            self.free_velocity[i] = project(element.a, &free[n..], &base[bases..])
+                - project(element.b, &free[n..], &base[bases..]);
+        }
+        let sweeps = if m == 1 && !self.dry[0] { 1 } else { SWEEPS };
+        for _ in 0..sweeps {
+            let mut settled = true;
+            for i in 0..m {
+                settled &= self.solve_element(i, time_s);
+            }
+            if settled {
+                break;
+            }
+        }
+    }
+
+    /// Updates S and D of one element with the others held; true if they stayed where they were.
+    #[inline(always)]
+    fn solve_element(&mut self, i: usize, time_s: f64) -> bool {
+        let m = self.elements.len();
+        let law = &self.elements[i].law;
+        let c = &self.compliance;
+        let (mut displacement, mut velocity) = (self.free_displacement[i], self.free_velocity[i]);
+        for j in (0..m).filter(|&j| j != i) {
+            let k = i * m + j;
+            displacement -=
+                c.displacement[k] * self.smooth[j] + c.dry_displacement[k] * self.dry_force[j];
+            velocity -= c.velocity[k] * self.smooth[j] + c.dry_velocity[k] * self.dry_force[j];
+        }
+        let own = i * m + i;
+        let (old_smooth, old_dry) = (self.smooth[i], self.dry_force[i]);
+        if self.dry[i] {
+            let free_velocity = velocity - c.velocity[own] * self.smooth[i];
+            self.dry_force[i] = dry_force(law.as_ref(), free_velocity, c.dry_velocity[own]);
+            displacement -= c.dry_displacement[own] * self.dry_force[i];
+            velocity -= c.dry_velocity[own] * self.dry_force[i];
+        }
+        self.smooth[i] = smooth_force(old_smooth, |s| {
+            law.force(MemberMotion {
+                displacement: displacement - c.displacement[own] * s,
+                velocity: velocity - c.velocity[own] * s,
+                time_s,
+            })
+        });
+        let size = self.smooth[i].abs() + self.dry_force[i].abs();
+        let change = (self.smooth[i] - old_smooth).abs() + (self.dry_force[i] - old_dry).abs();
+        change <= FORCE_TOLERANCE * size
+    }
+
+    /// Adds what S₁ and D₁ do to the free state, (1).
+    #[inline(always)]
+    fn push(&self, n: usize, next: &mut [f64], net: &mut [f64]) {
+        let (gamma0, gamma1) = (&self.propagator.gamma0, &self.propagator.gamma1);
+        net.fill(0.0);
+        for (element, &s) in self.elements.iter().zip(&self.smooth) {
+            spread(element, s, net);
+        }
+        for i in 0..2 * n {
+            for j in 0..n {
+                next[i] += gamma1[i * n + j] * net[j];
+            }
+        }
+        if self.dry.iter().any(|&dry| dry) {
+            net.fill(0.0);
+            for (element, &d) in self.elements.iter().zip(&self.dry_force) {
+                spread(element, d, net);
+            }
+            for i in 0..2 * n {
+                for j in 0..n {
+                    next[i] += (gamma0[i * n + j] + gamma1[i * n + j]) * net[j];
+                }
+            }
+        }
+    }
+}
+
+/// (4): the dry force at the end of a step that would end with `velocity` without it, when a unit
+/// of it changes the velocity by −`compliance`.
+#[inline(always)]
+fn dry_force(law: &dyn super::ForceLaw, velocity: f64, compliance: f64) -> f64 {
+    let level = |speed: f64| law.dry_level(speed).unwrap_or(0.0).max(0.0);
+    if compliance > 0.0 && velocity.abs() <= compliance * level(0.0) {
+        return velocity / compliance;
+    }
+    // Sliding: |v| = |v*| − G level(|v|), by fixed-point iteration (levels change little in a step).
+    let mut speed = velocity.abs();
+    for _ in 0..4 {
+        speed = (velocity.abs() - compliance * level(speed)).max(0.0);
+    }
+    level(speed)
+        * if velocity == 0.0 {
+            0.0
+        } else {
+            velocity.signum()
+        }
+}
+
+/// (3): solves S = φ(S) from a first guess by the secant method.
+#[inline(always)]
+fn smooth_force(guess: f64, law: impl Fn(f64) -> f64) -> f64 {
+    let mut s0 = guess;
+    let mut s1 = law(s0);
+    let mut residual0 = s1 - s0;
+    for _ in 0..SECANT_STEPS {
+        if residual0.abs() <= FORCE_TOLERANCE * s1.abs() {
+            return s1;
+        }
+        let residual1 = law(s1) - s1;
+        let slope = residual1 - residual0;
+        if slope == 0.0 || !slope.is_finite() {
+            return s1 + residual1;
+        }
+        let s2 = s1 - residual1 * (s1 - s0) / slope;
+        if residual1.abs() <= FORCE_TOLERANCE * s2.abs() {
+            return s2;
+        }
+        (s0, residual0, s1) = (s1, residual1, s2);
+    }
+    s1
+}

@@ -1,0 +1,11 @@
+//! Exact first-order-hold propagation of the linear part with nonlinear forces on top.
+
+mod expm;
+mod law;
+mod march;
+mod propagator;
+
+pub use expm::matrix_exponential;
+pub use law::{Element, ForceLaw, MemberMotion};
+pub use march::{Excitation, Snapshot};
+pub use propagator::ExactPropagator;
