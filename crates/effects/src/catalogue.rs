@@ -1,0 +1,43 @@
+//! The list of effects. One line each; everything else follows from it.
+
+use crate::Effect;
+use crate::kinds::*;
+
+static CATALOGUE: &[&dyn Effect] = &[
+    // Nominal parameters.
+    &mass_error::MassError,
+    &stiffness_error::StiffnessError,
+    &damping_error::DampingError,
+    &input_gain::InputGain,
+    // Forces.
+    &viscous_damping::ViscousDamping,
+    &linear_stiffness::LinearStiffness,
+    &coulomb_friction::CoulombFriction,
+    &stribeck_friction::StribeckFriction,
+    &quadratic_damping::QuadraticDamping,
+    &asymmetric_damping::AsymmetricDamping,
+    &cubic_stiffness::CubicStiffness,
+    &quadratic_stiffness::QuadraticStiffness,
+    &constant_force::ConstantForce,
+    // Measurement chain.
+    &sensor_bias::SensorBias,
+    &sensor_gain::SensorGain,
+    &sensor_delay::SensorDelay,
+    &alternating_timing::AlternatingTiming,
+    &alternating_gain::AlternatingGain,
+];
+
+/// Every effect known, nominal parameters first.
+#[must_use]
+pub fn catalogue() -> &'static [&'static dyn Effect] {
+    CATALOGUE
+}
+
+/// The effect of a name.
+#[must_use]
+pub fn find(kind: &str) -> Option<&'static dyn Effect> {
+    CATALOGUE
+        .iter()
+        .copied()
+        .find(|effect| effect.kind() == kind)
+}

@@ -1,0 +1,70 @@
+//! Dry friction of constant level.
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// Dry friction of constant level.
+///
+/// ```text
+/// F = Fc sgn(v), |F| <= Fc at rest
+/// ```
+pub(crate) struct CoulombFriction;
+
+struct Law {
+    level: f64,
+}
+
+impl ForceLaw for Law {
+    fn force(&self, _: MemberMotion) -> f64 {
+        0.0
+    }
+
+    fn dry_level(&self, _: f64) -> Option<f64> {
+        Some(self.level)
+    }
+}
+
+impl Effect for CoulombFriction {
+    fn kind(&self) -> &'static str {
+        "coulomb_friction"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Member
+    }
+
+    fn summary(&self) -> &'static str {
+        "dry friction of constant level opposes the motion"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = Fc sgn(v), |F| <= Fc at rest"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[Parameter {
+            name: "friction_force_n",
+            unit: "N",
+            lower: 0.0,
+            upper: f64::INFINITY,
+            neutral: Some(0.0),
+        }]
+    }
+
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        vec![vec![0.1 * scale.force_n]]
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law { level: values[0] }))
+    }
+
+    fn experiment(&self) -> &'static str {
+        "the same motion at a tenth of the amplitude: friction of constant level then dominates"
+    }
+}

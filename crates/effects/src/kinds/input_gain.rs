@@ -1,0 +1,52 @@
+//! An input drives the plant with another gain than assumed.
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::kinds::sensor_gain::Gain;
+
+/// An input drives the plant with another gain than assumed.
+pub(crate) struct InputGain;
+
+impl Effect for InputGain {
+    fn kind(&self) -> &'static str {
+        "input_gain"
+    }
+
+    fn family(&self) -> Family {
+        Family::NominalParameter
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Input
+    }
+
+    fn summary(&self) -> &'static str {
+        "the input acts with another gain than the model assumes"
+    }
+
+    fn equation(&self) -> &'static str {
+        "u = factor u_measured"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[Parameter {
+            name: "gain_factor",
+            unit: "1",
+            lower: 0.0,
+            upper: f64::INFINITY,
+            neutral: Some(1.0),
+        }]
+    }
+
+    fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
+        vec![vec![1.05]]
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        let factor = values[0];
+        Action::Input(Box::new(Gain(factor)))
+    }
+
+    fn experiment(&self) -> &'static str {
+        "a static calibration of the input against a reference"
+    }
+}

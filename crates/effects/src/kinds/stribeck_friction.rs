@@ -1,0 +1,99 @@
+//! Dry friction that falls from a break-away level to a sliding level.
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// Dry friction that falls from a break-away level to a sliding level.
+///
+/// ```text
+/// F = (Fc + (Fs - Fc) exp(-(v/vs)^2)) sgn(v), |F| <= Fs at rest
+/// ```
+pub(crate) struct StribeckFriction;
+
+struct Law {
+    sliding: f64,
+    excess: f64,
+    velocity: f64,
+}
+
+impl ForceLaw for Law {
+    fn force(&self, _: MemberMotion) -> f64 {
+        0.0
+    }
+
+    fn dry_level(&self, speed: f64) -> Option<f64> {
+        let ratio = speed / self.velocity;
+        Some(self.sliding + self.excess * (-ratio * ratio).exp())
+    }
+}
+
+impl Effect for StribeckFriction {
+    fn kind(&self) -> &'static str {
+        "stribeck_friction"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Member
+    }
+
+    fn summary(&self) -> &'static str {
+        "dry friction that is higher at low speed than while sliding"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = (Fc + (Fs - Fc) exp(-(v/vs)^2)) sgn(v), |F| <= Fs at rest"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[
+            Parameter {
+                name: "friction_force_n",
+                unit: "N",
+                lower: 0.0,
+                upper: f64::INFINITY,
+                neutral: Some(0.0),
+            },
+            Parameter {
+                name: "breakaway_force_n",
+                unit: "N",
+                lower: 0.0,
+                upper: f64::INFINITY,
+                neutral: Some(0.0),
+            },
+            Parameter {
+                name: "stribeck_velocity_m_per_s",
+                unit: "m/s",
+                lower: 1e-9,
+                upper: f64::INFINITY,
+                neutral: None,
+            },
+        ]
+    }
+
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        [0.05, 0.2, 0.6]
+            .iter()
+            .map(|share| {
+                let velocity = share * scale.velocity_m_per_s;
+                vec![0.1 * scale.force_n, 0.15 * scale.force_n, velocity]
+            })
+            .collect()
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law {
+            sliding: values[0],
+            excess: (values[1] - values[0]).max(0.0),
+            velocity: values[2],
+        }))
+    }
+
+    fn experiment(&self) -> &'static str {
+        "slow motion through several speeds below the Stribeck speed, forwards and back"
+    }
+}

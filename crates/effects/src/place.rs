@@ -1,0 +1,185 @@
+//! Effects at their places: where a kind can sit in a model, and one instance with its values.
+
+use std::collections::BTreeMap;
+
+use simgap_model::{EffectEntry, GROUND, Location, Model, same_pair};
+
+use crate::{Action, Effect, EffectError, SiteKind, catalogue, find};
+
+/// An effect at its place with its parameter values.
+#[derive(Clone)]
+pub struct Placed {
+    /// The catalogue entry.
+    pub effect: &'static dyn Effect,
+    /// Where it sits.
+    pub at: Location,
+    /// Values in the order of [`Effect::parameters`].
+    pub values: Vec<f64>,
+}
+
+impl Placed {
+    /// Gives an entry of a model file its meaning.
+    ///
+    /// # Errors
+    /// [`EffectError`] for an unknown kind or parameter, a missing parameter, a value outside its
+    /// physical range, or a place that does not go with the kind or is not in the model.
+    pub fn from_entry(model: &Model, entry: &EffectEntry) -> Result<Placed, EffectError> {
+        let effect = find(&entry.kind).ok_or_else(|| EffectError::UnknownKind {
+            found: entry.kind.clone(),
+            known: kinds(),
+        })?;
+        let parameters = effect.parameters();
+        if let Some(found) = entry
+            .parameters
+            .keys()
+            .find(|key| parameters.iter().all(|p| p.name != key.as_str()))
+        {
+            return Err(EffectError::UnknownParameter {
+                kind: entry.kind.clone(),
+                found: found.clone(),
+                known: parameters
+                    .iter()
+                    .map(|p| p.name)
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            });
+        }
+        let mut values = Vec::with_capacity(parameters.len());
+        for parameter in parameters {
+            let value = *entry.parameters.get(parameter.name).ok_or_else(|| {
+                EffectError::MissingParameter {
+                    kind: entry.kind.clone(),
+                    parameter: parameter.name,
+                }
+            })?;
+            if !(parameter.lower..=parameter.upper).contains(&value) {
+                return Err(EffectError::OutOfRange {
+                    kind: entry.kind.clone(),
+                    parameter: parameter.name,
+                    found: value,
+                    lower: parameter.lower,
+                    upper: parameter.upper,
+                });
+            }
+            values.push(value);
+        }
+        let needed = effect.site().place();
+        let fits = matches!(
+            (&entry.at, needed),
+            (Location::Between(_), MEMBER)
+                | (Location::Mass(_), MASS)
+                | (Location::Input(_), INPUT)
+                | (Location::Channel(_), CHANNEL)
+        );
+        if !fits {
+            return Err(EffectError::WrongPlace {
+                kind: entry.kind.clone(),
+                found: entry.at.to_string(),
+                needed,
+            });
+        }
+        model.check_location(&entry.at, &format!("[[effect]] \"{}\"", entry.kind))?;
+        Ok(Placed {
+            effect,
+            at: entry.at.clone(),
+            values,
+        })
+    }
+
+    /// The entry as a model file writes it.
+    #[must_use]
+    pub fn to_entry(&self) -> EffectEntry {
+        let names = self.effect.parameters().iter().map(|p| p.name.to_string());
+        EffectEntry {
+            kind: self.effect.kind().to_string(),
+            at: self.at.clone(),
+            parameters: names
+                .zip(self.values.iter().copied())
+                .collect::<BTreeMap<_, _>>(),
+        }
+    }
+
+    /// What it does.
+    #[must_use]
+    pub fn action(&self) -> Action {
+        self.effect.action(&self.values)
+    }
+}
+
+const MEMBER: &str = "between = [\"a\", \"b\"]";
+const MASS: &str = "mass = \"name\"";
+const INPUT: &str = "input = \"channel\"";
+const CHANNEL: &str = "channel = \"name\"";
+
+impl SiteKind {
+    /// The key that places an effect of this kind in a model file.
+    #[must_use]
+    pub fn place(self) -> &'static str {
+        match self {
+            SiteKind::Member
+            | SiteKind::Spring
+            | SiteKind::Damper
+            | SiteKind::NoSpring
+            | SiteKind::NoDamper => MEMBER,
+            SiteKind::Mass => MASS,
+            SiteKind::Input => INPUT,
+            SiteKind::Channel => CHANNEL,
+        }
+    }
+}
+
+fn kinds() -> String {
+    catalogue()
+        .iter()
+        .map(|effect| effect.kind())
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// Every place in a model where an effect of this site kind can sit, in the order of the file.
+#[must_use]
+pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
+    let sprung = |pair: &[String; 2]| model.springs.iter().any(|s| same_pair(&s.between, pair));
+    let damped = |pair: &[String; 2]| model.dampers.iter().any(|d| same_pair(&d.between, pair));
+    let between = |keep: &dyn Fn(&[String; 2]) -> bool| -> Vec<Location> {
+        joints(model)
+            .into_iter()
+            .filter(keep)
+            .map(Location::Between)
+            .collect()
+    };
+    match kind {
+        SiteKind::Member => between(&|_| true),
+        SiteKind::Spring => between(&sprung),
+        SiteKind::Damper => between(&damped),
+        SiteKind::NoSpring => between(&|pair| !sprung(pair)),
+        SiteKind::NoDamper => between(&|pair| !damped(pair)),
+        SiteKind::Mass => model
+            .masses
+            .iter()
+            .map(|m| Location::Mass(m.name.clone()))
+            .collect(),
+        SiteKind::Input => model
+            .inputs
+            .iter()
+            .map(|i| Location::Input(i.channel.clone()))
+            .collect(),
+        SiteKind::Channel => model
+            .outputs
+            .iter()
+            .map(|o| Location::Channel(o.channel.clone()))
+            .collect(),
+    }
+}
+
+/// The members of the model, and every mass with the ground.
+fn joints(model: &Model) -> Vec<[String; 2]> {
+    let mut joints = model.members();
+    for mass in &model.masses {
+        let pair = [mass.name.clone(), GROUND.to_string()];
+        if !joints.iter().any(|known| same_pair(known, &pair)) {
+            joints.push(pair);
+        }
+    }
+    joints
+}
