@@ -3,6 +3,18 @@
 //! Everything takes slices of `f64` in SI units and gives back small structs. Nothing here knows
 //! what a record, a model or an effect is.
 //!
+//! | Question | Module |
+//! |---|---|
+//! | which window, and what does it cost | [`window`] |
+//! | amplitude, phase and density of a whole record | [`spectrum`] |
+//! | which lines stand out of the noise, where exactly, how surely | [`peaks`] |
+//! | how large is the line at a frequency I know | [`lines`], [`orders`] |
+//! | averaged power and cross spectra of long records | [`welch`] |
+//! | frequency response, coherence and its random error | [`frf`] |
+//! | how large is the white measurement noise | [`noise`] |
+//! | how many independent samples is this residual worth | [`correlation`] |
+//! | how well do two curves agree | [`metrics`] |
+//!
 //! # Scaling, once and for all
 //!
 //! ```text
@@ -11,12 +23,18 @@
 //! ```
 
 mod check;
+pub mod correlation;
 pub mod error;
+pub mod frf;
+pub mod lines;
 pub mod metrics;
+pub mod noise;
+pub mod orders;
 pub mod peaks;
 mod real_fft;
 pub mod spectrum;
 pub mod trend;
+pub mod welch;
 pub mod window;
 
 pub use error::SignalError;

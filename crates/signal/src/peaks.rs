@@ -58,7 +58,9 @@ pub struct Peak {
 /// σ² = N / (4 B) · median(A²) / ln 2
 /// ```
 ///
-/// 2. Threshold: K bins of noise stay below with probability 1 - p, A² > E[A²] ln(K/p).
+/// 2. Threshold: K bins of noise stay below with probability 1 - p when A² > E\[A²\] L, L = ln(K/p). The
+///    median of M bins scatters, with relative variance c² = B / (M ln² 2), which lets more noise
+///    through by e^{L²c²/2}; so L (1 + L c²/2) is used.
 /// 3. A peak is the largest bin within a main lobe, and must exceed twice the summed side lobes of
 ///    the larger peaks, so that leakage is not reported as lines.
 /// 4. Place δ between bins from the three bins around the maximum, with the time origin in the
@@ -115,19 +117,20 @@ pub fn find_peaks(spectrum: &Spectrum, options: &PeakOptions) -> Result<Vec<Peak
     let needed = 4 * half_width + 4;
     check::finite("spectrum", &power, needed)?;
 
-    let threshold_factor = (power.len() as f64 / options.false_alarm_probability).ln();
-    let mut candidates: Vec<(usize, f64)> = (half_width..power.len() - half_width)
-        .filter(|&k| is_local_maximum(&power, k, half_width))
-        .map(|k| {
-            (
-                k,
-                local_noise_power(&power, k, half_width, options.noise_reach_bins),
-            )
-        })
-        .filter(|&(k, noise)| {
-            power[k] > threshold_factor * noise && spectrum.amplitude[k] >= options.min_amplitude
-        })
-        .collect();
+    let log_odds = (power.len() as f64 / options.false_alarm_probability).ln();
+    let bandwidth = spectrum.window.noise_bandwidth_bins();
+    let mut candidates: Vec<(usize, f64)> = Vec::new();
+    for k in half_width..power.len() - half_width {
+        if spectrum.amplitude[k] < options.min_amplitude || !is_local_maximum(&power, k, half_width)
+        {
+            continue;
+        }
+        let (noise, count) = local_noise_power(&power, k, half_width, options.noise_reach_bins);
+        let scatter = bandwidth / (count as f64 * LN_2 * LN_2);
+        if power[k] > noise * log_odds * (1.0 + 0.5 * log_odds * scatter) {
+            candidates.push((k, noise));
+        }
+    }
     candidates.sort_by(|a, b| power[b.0].total_cmp(&power[a.0]).then(a.0.cmp(&b.0)));
 
     let mut peaks: Vec<Peak> = Vec::new();
@@ -179,8 +182,9 @@ fn is_local_maximum(power: &[f64], k: usize, half_width: usize) -> bool {
     })
 }
 
-/// E[A²] of the noise around bin `k`: median over `reach` bins a side, the main lobe left out.
-fn local_noise_power(power: &[f64], k: usize, half_width: usize, reach: usize) -> f64 {
+/// E[A²] of the noise around bin `k` from the median over `reach` bins a side, the main lobe left out; and
+/// the number of bins used.
+fn local_noise_power(power: &[f64], k: usize, half_width: usize, reach: usize) -> (f64, usize) {
     let reach = reach.max(2 * half_width);
     let (from, to) = (
         k.saturating_sub(reach).max(1),
@@ -190,7 +194,7 @@ fn local_noise_power(power: &[f64], k: usize, half_width: usize, reach: usize) -
         .filter(|&j| j.abs_diff(k) > half_width)
         .map(|j| power[j])
         .collect();
-    check::median(&mut around) / LN_2
+    (check::median(&mut around) / LN_2, around.len())
 }
 
 /// Steps 4 and 5 of [`find_peaks`].

@@ -134,7 +134,7 @@ impl Psd {
 /// P_k = s |X_k|² / (fs Σ w²),    s = 2, but 1 at 0 Hz and at fs/2
 /// ```
 ///
-/// Its scatter does not shrink with the length of the record (one average): averaging is for long records.
+/// Its scatter does not shrink with the length of the record (one average): see [`crate::welch`].
 ///
 /// # Errors
 ///

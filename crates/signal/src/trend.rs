@@ -29,24 +29,42 @@ impl Trend {
     /// assert!(ramp.iter().all(|v| v.abs() < 1e-12));
     /// ```
     pub fn remove(self, values: &mut [f64]) {
-        let n = values.len() as f64;
-        if self == Trend::Keep || values.is_empty() {
-            return;
-        }
-        let mean = values.iter().sum::<f64>() / n;
-        let mid = 0.5 * (n - 1.0);
-        let slope = if self == Trend::Linear && values.len() > 1 {
-            let moment: f64 = values
-                .iter()
-                .enumerate()
-                .map(|(i, v)| (i as f64 - mid) * (v - mean))
-                .sum();
-            moment * 12.0 / (n * (n * n - 1.0))
-        } else {
-            0.0
-        };
+        let (mean, slope) = self.line(values);
+        let mid = 0.5 * (values.len() as f64 - 1.0);
         for (i, v) in values.iter_mut().enumerate() {
             *v -= mean + slope * (i as f64 - mid);
         }
     }
+
+    /// Value in the middle and slope per sample of what [`remove`](Self::remove) subtracts.
+    pub(crate) fn line(self, values: &[f64]) -> (f64, f64) {
+        let n = values.len() as f64;
+        if self == Trend::Keep || values.is_empty() {
+            return (0.0, 0.0);
+        }
+        let mean = sum(values) / n;
+        if self == Trend::Mean || values.len() == 1 {
+            return (mean, 0.0);
+        }
+        let mid = 0.5 * (n - 1.0);
+        let moment: f64 = values
+            .iter()
+            .enumerate()
+            .map(|(i, v)| (i as f64 - mid) * (v - mean))
+            .sum();
+        (mean, moment * 12.0 / (n * (n * n - 1.0)))
+    }
+}
+
+/// Sum in eight lanes: one chain of additions would wait for itself.
+fn sum(values: &[f64]) -> f64 {
+    let mut lanes = [0.0; 8];
+    let chunks = values.chunks_exact(8);
+    let rest: f64 = chunks.remainder().iter().sum();
+    for chunk in chunks {
+        for (lane, v) in lanes.iter_mut().zip(chunk) {
+            *lane += v;
+        }
+    }
+    lanes.iter().sum::<f64>() + rest
 }
