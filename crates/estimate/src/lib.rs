@@ -1,1 +1,20 @@
-//! Output-error estimation: sensitivities, priors, uncertainty.
+//! Output-error estimation: which parameter values make the simulation follow the records best,
+//! how sure that is, and what a further effect would bring.
+//!
+//! A [`Problem`] is a nominal model with its runs; a [`Fit`] is what the data say about one set of
+//! effects, with the nominal parameters held near their values and the initial states free.
+
+mod fit;
+mod layout;
+mod linearise;
+mod normal;
+mod problem;
+mod score;
+
+pub use fit::{Fit, Interval, fit, fit_initial_states};
+pub use layout::{Candidate, Start};
+pub use linearise::Linearised;
+pub use problem::{Problem, Weights};
+pub use score::{Base, Score, linearise_at, score};
+
+pub use simgap_simulate::SimulateError as EstimateError;

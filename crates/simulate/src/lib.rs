@@ -1,1 +1,15 @@
 //! A model with its effects driven by a record: predicted outputs.
+//!
+//! [`Run`] brings a record into the units of a model; [`Simulator`] holds the model with its
+//! effects, ready to be marched through runs from any initial state.
+
+mod error;
+mod outputs;
+mod run;
+mod simulator;
+mod step;
+
+pub use error::SimulateError;
+pub use run::Run;
+pub use simulator::{MemberPath, Simulator};
+pub use step::substeps_for;

@@ -1,0 +1,264 @@
+//! Output-error least squares with unknown noise levels.
+//!
+//! ```text
+//! J(θ) = ½ Σ_c ρ_c N_c ln(V_c(θ) + ε_c²) + ½ Σ_i ((θ_i − μ_i)/σ_i)²       (1)
+//! V_c = Σ r_c² / N_c,   r_c = measured − predicted, channel c             (2)
+//! w_c = ρ_c / (V_c + ε_c²)                                                (3)
+//! (Jᵀ W J + Σ⁻¹ + λ diag) δ = Jᵀ W r − Σ⁻¹ (θ − μ)                        (4)
+//! ```
+//!
+//! (1) is the likelihood with the noise variance of each channel concentrated out, ρ_c the share
+//! of independent samples; (4) its Gauss-Newton step, damped after Levenberg and Marquardt.
+//! Entries at a physical bound that the step would push further out are held there.
+//!
+//! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
+
+use crate::layout::Layout;
+use crate::linearise::{Linearised, Signals, discrepancies, linearise};
+use crate::normal::{damped_step, normal_equations, variances};
+use crate::{EstimateError, Problem, Start, Weights};
+
+/// A parameter value with its 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Estimate.
+    pub value: f64,
+    /// Lower and upper end; infinite where the data do not see the parameter.
+    pub ci95: [f64; 2],
+}
+
+/// What the data say about one set of effects.
+#[derive(Clone)]
+pub struct Fit {
+    /// Estimated effects, nominal parameters and initial states.
+    pub estimate: Start,
+    /// J of (1): lower is better; differences are in units of log-likelihood.
+    pub objective: f64,
+    /// Mean square discrepancy of each channel, V_c.
+    pub variance: Vec<f64>,
+    /// Intervals of the effects' parameters, effect by effect.
+    pub intervals: Vec<Vec<Interval>>,
+    /// Discrepancies of each run and channel at the estimate.
+    pub discrepancy: Vec<Signals>,
+    /// Steps taken.
+    pub iterations: usize,
+}
+
+/// Two-sided 95 % point of the normal distribution.
+const NORMAL_95: f64 = 1.959_964;
+/// A step that improves J by less than this is the last: a fifth of what one parameter gains from
+/// pure noise in its least noticeable direction.
+const CONVERGED: f64 = 0.02;
+const MOST_ITERATIONS: usize = 25;
+
+/// Fits a set of effects, the nominal parameters under their prior, and the initial states.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated from the start.
+pub fn fit(problem: &Problem, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
+    let layout = Layout::new(start, &state_scale(problem), weights.nominal_prior);
+    let merit = Merit::new(problem, weights);
+    let mut theta = layout.pack(start);
+    layout.clamp(&mut theta);
+    let (mut objective, _) = merit.of(&layout, &theta, &discrepancies(problem, &layout, &theta)?);
+    let mut damping = 1e-4;
+    let mut iterations = 0;
+    let mut at = linearise(problem, &layout, &theta)?;
+    while iterations < MOST_ITERATIONS {
+        iterations += 1;
+        let Some((next, value)) = step(
+            problem,
+            &layout,
+            &merit,
+            &theta,
+            objective,
+            &at,
+            &mut damping,
+        ) else {
+            break;
+        };
+        let gain = objective - value;
+        (theta, objective) = (next, value);
+        at = linearise(problem, &layout, &theta)?;
+        if gain < CONVERGED {
+            break;
+        }
+    }
+    Ok(finish(&layout, &merit, &theta, at, iterations))
+}
+
+/// One accepted step of (4), or `None` when no damping finds an improvement.
+fn step(
+    problem: &Problem,
+    layout: &Layout,
+    merit: &Merit,
+    theta: &[f64],
+    objective: f64,
+    at: &Linearised,
+    damping: &mut f64,
+) -> Option<(Vec<f64>, f64)> {
+    let (_, variance) = merit.of(layout, theta, &at.discrepancy);
+    let (hessian, gradient) = normal_equations(layout, theta, at, &merit.weights(&variance));
+    let free: Vec<usize> = (0..layout.len())
+        .filter(|&i| {
+            let outward = (theta[i] <= layout.lower[i] && gradient[i] < 0.0)
+                || (theta[i] >= layout.upper[i] && gradient[i] > 0.0);
+            !outward
+        })
+        .collect();
+    for _ in 0..8 {
+        let mut next = theta.to_vec();
+        if let Some(step) = damped_step(&hessian, &gradient, &free, *damping) {
+            for (i, delta) in step.iter().enumerate() {
+                next[i] += delta * layout.scale[i];
+            }
+            layout.clamp(&mut next);
+            if let Ok(discrepancy) = discrepancies(problem, layout, &next) {
+                let (value, _) = merit.of(layout, &next, &discrepancy);
+                if value < objective {
+                    *damping = (*damping * 0.1).max(1e-9);
+                    return Some((next, value));
+                }
+            }
+        }
+        *damping *= 10.0;
+    }
+    None
+}
+
+fn finish(layout: &Layout, merit: &Merit, theta: &[f64], at: Linearised, iterations: usize) -> Fit {
+    let (objective, variance) = merit.of(layout, theta, &at.discrepancy);
+    let (hessian, _) = normal_equations(layout, theta, &at, &merit.weights(&variance));
+    let all: Vec<usize> = (0..layout.len()).collect();
+    let spread = variances(&hessian, &all);
+    let estimate = layout.unpack(theta);
+    let mut entry = 0;
+    let intervals = estimate
+        .effects
+        .iter()
+        .map(|placed| {
+            placed
+                .values
+                .iter()
+                .map(|&value| {
+                    let half = NORMAL_95 * spread[entry].sqrt() * layout.scale[entry];
+                    let ci95 = [
+                        (value - half).max(layout.lower[entry]),
+                        (value + half).min(layout.upper[entry]),
+                    ];
+                    entry += 1;
+                    Interval { value, ci95 }
+                })
+                .collect()
+        })
+        .collect();
+    Fit {
+        estimate,
+        objective,
+        variance,
+        intervals,
+        discrepancy: at.discrepancy,
+        iterations,
+    }
+}
+
+/// Fits only the initial states, with everything else as given.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn fit_initial_states(
+    problem: &Problem,
+    effects: &[simgap_effects::Placed],
+    weights: &Weights,
+) -> Result<Fit, EstimateError> {
+    let mut fixed = problem.with_runs(problem.runs.clone());
+    fixed.given.extend_from_slice(effects);
+    let start = Start {
+        effects: vec![],
+        nominal: vec![],
+        initial: problem.initial_guess(),
+    };
+    fit(&fixed, &start, weights)
+}
+
+/// The objective (1) and the weights (3).
+pub(crate) struct Merit {
+    independence: Vec<f64>,
+    floor: Vec<f64>,
+    count: f64,
+}
+
+impl Merit {
+    pub(crate) fn new(problem: &Problem, weights: &Weights) -> Merit {
+        let std = problem.output_std();
+        Merit {
+            independence: weights.independence.clone(),
+            floor: std
+                .iter()
+                .map(|s| (weights.accuracy * s).powi(2).max(f64::MIN_POSITIVE))
+                .collect(),
+            count: problem.runs.iter().map(|run| run.len as f64).sum(),
+        }
+    }
+
+    pub(crate) fn variance(&self, discrepancy: &[Signals]) -> Vec<f64> {
+        (0..self.floor.len())
+            .map(|c| {
+                let square = |run: &Signals| run[c].iter().map(|r| r * r).sum::<f64>();
+                discrepancy.iter().map(square).sum::<f64>() / self.count
+            })
+            .collect()
+    }
+
+    /// J and V_c; J is infinite when a simulation ran away.
+    pub(crate) fn of(
+        &self,
+        layout: &Layout,
+        theta: &[f64],
+        discrepancy: &[Signals],
+    ) -> (f64, Vec<f64>) {
+        let variance = self.variance(discrepancy);
+        let fit: f64 = variance
+            .iter()
+            .zip(&self.floor)
+            .zip(&self.independence)
+            .map(|((v, floor), rho)| 0.5 * rho * self.count * (v + floor).ln())
+            .sum();
+        let prior: f64 = (0..theta.len())
+            .map(|i| 0.5 * ((theta[i] - layout.prior_mean[i]) / layout.prior_std[i]).powi(2))
+            .sum();
+        let value = fit + prior;
+        (if value.is_nan() { f64::INFINITY } else { value }, variance)
+    }
+
+    pub(crate) fn weights(&self, variance: &[f64]) -> Vec<f64> {
+        let floor = self.floor.iter().zip(&self.independence);
+        variance
+            .iter()
+            .zip(floor)
+            .map(|(v, (floor, rho))| rho / (v + floor))
+            .collect()
+    }
+}
+
+/// Typical size of each entry of an initial state: what the outputs allow to guess, one elsewhere.
+pub(crate) fn state_scale(problem: &Problem) -> Vec<f64> {
+    let n = problem.model.dof_count();
+    let std = problem.output_std();
+    let mut displacement = 0.0_f64;
+    for (output, std) in problem.model.outputs.iter().zip(&std) {
+        if output.kind == simgap_model::OutputKind::Displacement {
+            displacement = displacement.max(*std);
+        }
+    }
+    let step = problem.runs.first().map_or(1.0, |run| run.time_step_s);
+    let size = if displacement > 0.0 {
+        displacement
+    } else {
+        1e-3
+    };
+    let velocity = size / (100.0 * step);
+    (0..2 * n)
+        .map(|i| if i < n { size } else { velocity })
+        .collect()
+}

@@ -1,0 +1,110 @@
+//! Residuals and their sensitivities at one point.
+
+use crate::layout::Layout;
+use crate::{EstimateError, Problem};
+
+/// Relative size of a finite-difference step: the square root of the accuracy of a simulation
+/// (1e-8 to 1e-10 with sticking friction), so that truncation and rounding errors balance.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Signals of one run: one vector for each channel.
+pub(crate) type Signals = Vec<Vec<f64>>;
+
+/// Discrepancies (measured minus predicted) and the sensitivities of the predictions.
+pub struct Linearised {
+    /// For each run and channel, measured minus predicted.
+    pub discrepancy: Vec<Signals>,
+    /// For each run, for each shared entry of θ and then each entry of the run's own initial
+    /// state, the derivative of the prediction by θ / scale.
+    pub(crate) columns: Vec<Vec<Signals>>,
+}
+
+/// Predicts a run with a packed vector.
+pub(crate) fn predict(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+    run: usize,
+) -> Result<Signals, EstimateError> {
+    let start = layout.unpack(theta);
+    let effects: Vec<_> = start.effects.into_iter().chain(start.nominal).collect();
+    problem
+        .simulator(&effects)?
+        .predict(&problem.runs[run], layout.state(theta, run))
+}
+
+/// Measured minus predicted, for every run and channel.
+pub(crate) fn discrepancies(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+) -> Result<Vec<Signals>, EstimateError> {
+    (0..problem.runs.len())
+        .map(|run| {
+            let predicted = predict(problem, layout, theta, run)?;
+            Ok(subtract(&problem.runs[run].measured, predicted))
+        })
+        .collect()
+}
+
+fn subtract(measured: &[Option<Vec<f64>>], mut predicted: Signals) -> Signals {
+    for (signal, measured) in predicted.iter_mut().zip(measured) {
+        match measured {
+            Some(measured) => signal
+                .iter_mut()
+                .zip(measured)
+                .for_each(|(p, m)| *p = m - *p),
+            None => signal.fill(0.0),
+        }
+    }
+    predicted
+}
+
+/// Derivative of the prediction of a run by one entry of θ / scale, given its discrepancy at θ.
+fn column(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+    run: usize,
+    entry: usize,
+    discrepancy: &Signals,
+) -> Result<Signals, EstimateError> {
+    let mut moved = theta.to_vec();
+    let mut step = DIFFERENCE * layout.scale[entry];
+    if theta[entry] + step > layout.upper[entry] {
+        step = -step;
+    }
+    moved[entry] += step;
+    let predicted = predict(problem, layout, &moved, run)?;
+    let mut change = subtract(&problem.runs[run].measured, predicted);
+    let factor = layout.scale[entry] / step;
+    for (signal, base) in change.iter_mut().zip(discrepancy) {
+        signal
+            .iter_mut()
+            .zip(base)
+            .for_each(|(after, before)| *after = (before - *after) * factor);
+    }
+    Ok(change)
+}
+
+/// Discrepancies and all sensitivities at θ.
+pub(crate) fn linearise(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+) -> Result<Linearised, EstimateError> {
+    let discrepancy = discrepancies(problem, layout, theta)?;
+    let columns = (0..problem.runs.len())
+        .map(|run| {
+            let own = layout.state_offset(run)..layout.state_offset(run) + layout.state_len();
+            (0..layout.shared_len())
+                .chain(own)
+                .map(|entry| column(problem, layout, theta, run, entry, &discrepancy[run]))
+                .collect::<Result<Vec<_>, _>>()
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(Linearised {
+        discrepancy,
+        columns,
+    })
+}

@@ -1,0 +1,140 @@
+//! Normal equations of the weighted least-squares step.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+
+use crate::layout::Layout;
+use crate::linearise::{Linearised, Signals};
+
+/// Weight of each channel, 1 / variance of an independent sample times independence.
+pub(crate) type ChannelWeights = Vec<f64>;
+
+/// Index in θ of each column of a run.
+pub(crate) fn entries(layout: &Layout, run: usize) -> Vec<usize> {
+    let own = layout.state_offset(run)..layout.state_offset(run) + layout.state_len();
+    (0..layout.shared_len()).chain(own).collect()
+}
+
+/// Weighted inner product of two sets of signals.
+pub(crate) fn inner(a: &Signals, b: &Signals, weights: &[f64]) -> f64 {
+    let dot = |x: &[f64], y: &[f64]| -> f64 {
+        // Four running sums keep the additions independent of each other.
+        let mut sums = [0.0; 4];
+        let (x4, y4) = (x.chunks_exact(4), y.chunks_exact(4));
+        let rest: f64 = x4
+            .remainder()
+            .iter()
+            .zip(y4.remainder())
+            .map(|(p, q)| p * q)
+            .sum();
+        for (p, q) in x4.zip(y4) {
+            for k in 0..4 {
+                sums[k] += p[k] * q[k];
+            }
+        }
+        sums.iter().sum::<f64>() + rest
+    };
+    a.iter()
+        .zip(b)
+        .zip(weights)
+        .map(|((x, y), w)| w * dot(x, y))
+        .sum()
+}
+
+/// H = Jᵀ W J + prior, g = Jᵀ W r − prior gradient, in units of the scales.
+pub(crate) fn normal_equations(
+    layout: &Layout,
+    theta: &[f64],
+    at: &Linearised,
+    weights: &[f64],
+) -> (Mat<f64>, Vec<f64>) {
+    let len = layout.len();
+    let mut hessian = Mat::zeros(len, len);
+    let mut gradient = vec![0.0; len];
+    for (run, columns) in at.columns.iter().enumerate() {
+        let index = entries(layout, run);
+        for (a, column) in columns.iter().enumerate() {
+            gradient[index[a]] += inner(column, &at.discrepancy[run], weights);
+            for (b, other) in columns.iter().enumerate().take(a + 1) {
+                let value = inner(column, other, weights);
+                hessian[(index[a], index[b])] += value;
+                if a != b {
+                    hessian[(index[b], index[a])] += value;
+                }
+            }
+        }
+    }
+    for i in 0..len {
+        let precision = (layout.scale[i] / layout.prior_std[i]).powi(2);
+        hessian[(i, i)] += precision;
+        gradient[i] -= precision * (theta[i] - layout.prior_mean[i]) / layout.scale[i];
+    }
+    (hessian, gradient)
+}
+
+/// A diagonal entry below this share of the largest belongs to a direction the data do not see.
+const UNSEEN: f64 = 1e-24;
+
+/// Solves (H + λ diag H) δ = g over the entries that are free to move; the others stay.
+pub(crate) fn damped_step(
+    hessian: &Mat<f64>,
+    gradient: &[f64],
+    free: &[usize],
+    damping: f64,
+) -> Option<Vec<f64>> {
+    let (factor, kept, scale) = factorise(hessian, free, damping)?;
+    let rhs = Mat::from_fn(kept.len(), 1, |i, _| gradient[kept[i]] / scale[i]);
+    let solution = factor.solve(rhs);
+    let mut step = vec![0.0; gradient.len()];
+    for (i, &entry) in kept.iter().enumerate() {
+        step[entry] = solution[(i, 0)] / scale[i];
+    }
+    step.iter().all(|value| value.is_finite()).then_some(step)
+}
+
+/// Diagonal of H⁻¹ over the free entries; infinite where the data see nothing.
+pub(crate) fn variances(hessian: &Mat<f64>, free: &[usize]) -> Vec<f64> {
+    let mut variance = vec![f64::INFINITY; hessian.nrows()];
+    // A whisper of damping keeps a singular H factorisable; its directions come out at 1e12 of the
+    // well-seen ones, which is as good as infinite.
+    let Some((factor, kept, scale)) = factorise(hessian, free, 1e-12) else {
+        return variance;
+    };
+    let inverse = factor.solve(Mat::<f64>::identity(kept.len(), kept.len()));
+    for (i, &entry) in kept.iter().enumerate() {
+        let value = inverse[(i, i)];
+        variance[entry] = if value < 1e10 {
+            value / (scale[i] * scale[i])
+        } else {
+            f64::INFINITY
+        };
+    }
+    variance
+}
+
+type Factor = faer::linalg::solvers::Llt<f64>;
+
+/// Cholesky factor of H scaled to a unit diagonal, over the free entries that are seen.
+fn factorise(
+    hessian: &Mat<f64>,
+    free: &[usize],
+    damping: f64,
+) -> Option<(Factor, Vec<usize>, Vec<f64>)> {
+    let largest = free.iter().map(|&i| hessian[(i, i)]).fold(0.0, f64::max);
+    let kept: Vec<usize> = free
+        .iter()
+        .copied()
+        .filter(|&i| hessian[(i, i)] > UNSEEN * largest)
+        .collect();
+    let scale: Vec<f64> = kept.iter().map(|&i| hessian[(i, i)].sqrt()).collect();
+    let matrix = Mat::from_fn(kept.len(), kept.len(), |i, j| {
+        let value = hessian[(kept[i], kept[j])] / (scale[i] * scale[j]);
+        if i == j {
+            value * (1.0 + damping)
+        } else {
+            value
+        }
+    });
+    let factor = matrix.llt(Side::Lower).ok()?;
+    Some((factor, kept, scale))
+}

@@ -1,0 +1,243 @@
+//! What is estimated from.
+
+use simgap_effects::{Family, Placed, catalogue, sites};
+use simgap_model::{Location, Model, OutputKind};
+use simgap_simulate::{MemberPath, Run, Simulator, substeps_for};
+
+use crate::{Candidate, EstimateError};
+use simgap_effects::SiteScale;
+
+/// A nominal model and the runs it is compared with.
+pub struct Problem {
+    /// The nominal model.
+    pub model: Model,
+    /// The runs; every output measured.
+    pub runs: Vec<Run>,
+    /// Effects that belong to the nominal model (written in its file).
+    pub given: Vec<Placed>,
+    /// Steps between samples where nonlinear forces act.
+    pub substeps: usize,
+}
+
+/// How strongly each channel and each nominal parameter counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weights {
+    /// Independent samples per sample of each channel, 0 to 1: residuals with colour say less than
+    /// their number.
+    pub independence: Vec<f64>,
+    /// Residuals below this share of a channel's standard deviation count as perfect: neither the
+    /// integration nor any sensor is better.
+    pub accuracy: f64,
+    /// Standard deviation of the prior on each nominal parameter, relative to its value.
+    pub nominal_prior: f64,
+}
+
+impl Weights {
+    /// Every sample independent, nominal parameters known to 4 %.
+    #[must_use]
+    pub fn independent(channels: usize) -> Weights {
+        Weights {
+            independence: vec![1.0; channels],
+            accuracy: 5e-4,
+            nominal_prior: 0.04,
+        }
+    }
+}
+
+impl Problem {
+    /// Prepares a model and its runs.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated or an effect of its file cannot be
+    /// used.
+    pub fn new(model: &Model, runs: Vec<Run>) -> Result<Problem, EstimateError> {
+        let given = model
+            .effects
+            .iter()
+            .map(|entry| Placed::from_entry(model, entry))
+            .collect::<Result<Vec<_>, _>>()?;
+        let substeps = substeps_for(model, &runs)?;
+        Ok(Problem {
+            model: model.clone(),
+            runs,
+            given,
+            substeps,
+        })
+    }
+
+    /// The same model with other runs and the same steps.
+    #[must_use]
+    pub fn with_runs(&self, runs: Vec<Run>) -> Problem {
+        Problem {
+            model: self.model.clone(),
+            runs,
+            given: self.given.clone(),
+            substeps: self.substeps,
+        }
+    }
+
+    /// The nominal model with effects on top of those it has.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when a place is not in the model.
+    pub fn simulator(&self, effects: &[Placed]) -> Result<Simulator, EstimateError> {
+        let all: Vec<Placed> = self.given.iter().chain(effects).cloned().collect();
+        Simulator::new(&self.model, &all, self.substeps)
+    }
+
+    /// Length of an initial state.
+    #[must_use]
+    pub fn state_len(&self) -> usize {
+        2 * self.model.dof_count()
+    }
+
+    /// Every nominal parameter of the model, as catalogue entries at their places.
+    #[must_use]
+    pub fn nominal_parameters(&self) -> Vec<Candidate> {
+        self.candidates(|family| family == Family::NominalParameter)
+    }
+
+    /// Every catalogue entry of the chosen families at every place it can sit.
+    pub fn candidates(&self, family: impl Fn(Family) -> bool) -> Vec<Candidate> {
+        let mut candidates = Vec::new();
+        for &effect in catalogue().iter().filter(|effect| family(effect.family())) {
+            for at in sites(&self.model, effect.site()) {
+                candidates.push(Candidate { effect, at });
+            }
+        }
+        candidates
+    }
+
+    /// Standard deviation of each output over all runs, model units.
+    #[must_use]
+    pub fn output_std(&self) -> Vec<f64> {
+        (0..self.model.outputs.len())
+            .map(|channel| {
+                let values = || {
+                    self.runs
+                        .iter()
+                        .filter_map(|r| r.measured[channel].as_ref())
+                        .flatten()
+                };
+                rms_about_mean(values)
+            })
+            .collect()
+    }
+
+    /// First guess of the initial state of each run, from the measured displacements and
+    /// velocities of the masses where there are any, zero elsewhere.
+    #[must_use]
+    pub fn initial_guess(&self) -> Vec<Vec<f64>> {
+        let n = self.model.dof_count();
+        let dof = |name: &Option<String>| {
+            name.as_ref()
+                .and_then(|name| self.model.masses.iter().position(|m| &m.name == name))
+        };
+        self.runs
+            .iter()
+            .map(|run| {
+                let mut state = vec![0.0; 2 * n];
+                for (output, measured) in self.model.outputs.iter().zip(&run.measured) {
+                    let (Some(i), Some(values)) = (dof(&output.at), measured) else {
+                        continue;
+                    };
+                    let first = values.first().copied().unwrap_or(0.0);
+                    match output.kind {
+                        OutputKind::Displacement => state[i] = first,
+                        OutputKind::Velocity => state[n + i] = first,
+                        OutputKind::Acceleration | OutputKind::Force => {}
+                    }
+                }
+                state
+            })
+            .collect()
+    }
+
+    /// Typical sizes at a place, from the motion that a simulation predicts there.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated.
+    pub fn site_scale(
+        &self,
+        simulator: &Simulator,
+        initial: &[Vec<f64>],
+        at: &Location,
+    ) -> Result<SiteScale, EstimateError> {
+        let mut path = MemberPath::default();
+        for (run, state) in self.runs.iter().zip(initial) {
+            let one = simulator.path(run, state, at)?;
+            path.displacement.extend(one.displacement);
+            path.velocity.extend(one.velocity);
+            path.acceleration.extend(one.acceleration);
+        }
+        let inertia = self.force_scale(at, rms_about_mean(|| path.acceleration.iter()));
+        let signal = match at {
+            Location::Channel(name) => {
+                let index = self.model.outputs.iter().position(|o| &o.channel == name);
+                index.map_or(0.0, |i| self.output_std()[i])
+            }
+            Location::Input(name) => {
+                let index = self.model.inputs.iter().position(|i| &i.channel == name);
+                index.map_or(0.0, |i| {
+                    rms_about_mean(|| self.runs.iter().flat_map(move |run| run.inputs[i].iter()))
+                })
+            }
+            Location::Between(_) | Location::Mass(_) => 0.0,
+        };
+        // A site that does not move in the nominal model still gets finite starting values.
+        let positive = |value: f64| {
+            if value > 0.0 && value.is_finite() {
+                value
+            } else {
+                1.0
+            }
+        };
+        let longest = self.runs.iter().map(Run::duration_s).fold(0.0, f64::max);
+        Ok(SiteScale {
+            displacement_m: positive(rms_about_mean(|| path.displacement.iter())),
+            velocity_m_per_s: positive(rms_about_mean(|| path.velocity.iter())),
+            force_n: positive(inertia),
+            signal: positive(signal),
+            time_step_s: self.runs.first().map_or(1.0, |run| run.time_step_s),
+            duration_s: positive(longest),
+        })
+    }
+
+    /// Largest of the forces that act around a place, N: inertia, inputs, loads, outputs in force.
+    fn force_scale(&self, at: &Location, acceleration: f64) -> f64 {
+        let names: Vec<&String> = match at {
+            Location::Between(pair) => pair.iter().collect(),
+            Location::Mass(mass) => vec![mass],
+            Location::Input(_) | Location::Channel(_) => vec![],
+        };
+        let masses = self
+            .model
+            .masses
+            .iter()
+            .filter(|mass| names.contains(&&mass.name));
+        let inertia = masses.map(|mass| mass.value).fold(0.0, f64::max) * acceleration;
+        if inertia > 0.0 {
+            return inertia;
+        }
+        let forces = self
+            .model
+            .outputs
+            .iter()
+            .zip(self.output_std())
+            .filter(|(output, _)| output.kind == OutputKind::Force)
+            .map(|(_, std)| std);
+        forces.fold(0.0, f64::max)
+    }
+}
+
+/// Root mean square about the mean.
+pub(crate) fn rms_about_mean<'a, I: Iterator<Item = &'a f64>>(values: impl Fn() -> I) -> f64 {
+    let (mut count, mut sum) = (0.0_f64, 0.0);
+    for value in values() {
+        count += 1.0;
+        sum += value;
+    }
+    let mean = sum / count.max(1.0);
+    let square: f64 = values().map(|value| (value - mean) * (value - mean)).sum();
+    (square / count.max(1.0)).sqrt()
+}

@@ -1,0 +1,250 @@
+//! What a further effect would bring, without fitting it.
+//!
+//! At a fit with residual r and sensitivities J, the effect at a small size ε contributes columns
+//! C. Projected past everything the fit may still adjust,
+//!
+//! ```text
+//! S = CᵀWC − CᵀWJ H⁻¹ JᵀWC,   b = CᵀWr − CᵀWJ H⁻¹ g,   â = S⁻¹ b         (1)
+//! gain = −½ Σ_c ρ_c N_c ln(1 − bᵀâ / rᵀWr)                               (2)
+//! ```
+//!
+//! (1) is the score test of the effect, â the size the data ask for and the start of its fit.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+use simgap_effects::{Effect, Placed, SiteScale};
+
+use crate::fit::{Merit, state_scale};
+use crate::layout::Layout;
+use crate::linearise::{Linearised, Signals, linearise};
+use crate::normal::{entries, inner, normal_equations};
+use crate::{Candidate, EstimateError, Fit, Problem, Weights};
+
+/// Size of the trial effect as a share of its starting values: small enough to be linear.
+const TRIAL: f64 = 0.02;
+/// Columns that keep less than this of their energy past the nuisance are explained by it.
+const HIDDEN: f64 = 1e-6;
+
+/// A fit, linearised once for the score of many effects.
+pub struct Base<'a> {
+    problem: &'a Problem,
+    fit: &'a Fit,
+    layout: Layout,
+    at: Linearised,
+    weights: Vec<f64>,
+    hessian: Mat<f64>,
+    gradient: Vec<f64>,
+    independent_samples: f64,
+}
+
+/// What a further effect would bring.
+#[derive(Clone)]
+pub struct Score {
+    /// Expected fall of the objective.
+    pub gain: f64,
+    /// The effect with the size the data ask for, inside its physical bounds.
+    pub start: Placed,
+}
+
+/// Prepares the score of many effects at one fit.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn linearise_at<'a>(
+    problem: &'a Problem,
+    fit: &'a Fit,
+    weights: &Weights,
+) -> Result<Base<'a>, EstimateError> {
+    let layout = Layout::new(&fit.estimate, &state_scale(problem), weights.nominal_prior);
+    let theta = layout.pack(&fit.estimate);
+    let at = linearise(problem, &layout, &theta)?;
+    let merit = Merit::new(problem, weights);
+    let channel_weights = merit.weights(&merit.variance(&at.discrepancy));
+    let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
+    let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
+    Ok(Base {
+        problem,
+        fit,
+        layout,
+        at,
+        weights: channel_weights,
+        hessian,
+        gradient,
+        independent_samples: count * weights.independence.iter().sum::<f64>(),
+    })
+}
+
+/// Scores one candidate from each of its starting shapes, best first. Shapes that would need a
+/// size outside the physical bounds are left out.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn score(
+    base: &Base<'_>,
+    candidate: &Candidate,
+    scale: &SiteScale,
+) -> Result<Vec<Score>, EstimateError> {
+    let mut scores = Vec::new();
+    for shape in candidate.effect.starts(scale) {
+        scores.extend(base.score_shape(candidate, &shape)?);
+    }
+    scores.sort_by(|a: &Score, b: &Score| b.gain.total_cmp(&a.gain));
+    Ok(scores)
+}
+
+/// The values of a shape with its k-th sized parameter at a share of its start and the other sized
+/// parameters at the values where the effect vanishes; `None` for all sized parameters together.
+fn sized(effect: &dyn Effect, shape: &[f64], only: Option<usize>, share: f64) -> Vec<f64> {
+    let sized = effect.parameters().iter().zip(shape).enumerate();
+    sized
+        .map(|(i, (parameter, &value))| match parameter.neutral {
+            Some(neutral) if only.is_none_or(|k| k == i) => neutral + share * (value - neutral),
+            Some(neutral) => neutral,
+            None => value,
+        })
+        .collect()
+}
+
+impl Base<'_> {
+    fn score_shape(
+        &self,
+        candidate: &Candidate,
+        shape: &[f64],
+    ) -> Result<Option<Score>, EstimateError> {
+        let parameters = candidate.effect.parameters();
+        let sizes: Vec<usize> = (0..parameters.len())
+            .filter(|&i| parameters[i].neutral.is_some())
+            .collect();
+        let mut columns = Vec::new();
+        for &k in &sizes {
+            let values = sized(candidate.effect, shape, Some(k), TRIAL);
+            columns.push(self.columns(candidate, values)?);
+        }
+        let Some((amplitude, energy)) = self.amplitudes(&columns) else {
+            return Ok(None);
+        };
+        let mut values = shape.to_vec();
+        let mut reached = 1.0_f64;
+        for (&k, a) in sizes.iter().zip(&amplitude) {
+            let neutral = parameters[k].neutral.unwrap_or(0.0);
+            let wanted = neutral + a * (shape[k] - neutral);
+            values[k] = wanted.clamp(parameters[k].lower, parameters[k].upper);
+            if values[k] == neutral || !wanted.is_finite() {
+                reached = reached.min(0.0);
+            }
+        }
+        if reached <= 0.0 && sizes.len() == 1 {
+            return Ok(None);
+        }
+        let total: f64 = (0..self.at.discrepancy.len())
+            .map(|run| {
+                inner(
+                    &self.at.discrepancy[run],
+                    &self.at.discrepancy[run],
+                    &self.weights,
+                )
+            })
+            .sum();
+        let share = (energy / total).clamp(0.0, 1.0 - 1e-9);
+        let gain = -0.5 * self.independent_samples * (1.0 - share).ln();
+        let start = Placed {
+            effect: candidate.effect,
+            at: candidate.at.clone(),
+            values,
+        };
+        Ok(Some(Score { gain, start }))
+    }
+
+    /// Change of the prediction of every run by the trial effect, divided by its share.
+    fn columns(
+        &self,
+        candidate: &Candidate,
+        values: Vec<f64>,
+    ) -> Result<Vec<Signals>, EstimateError> {
+        let estimate = &self.fit.estimate;
+        let trial = Placed {
+            effect: candidate.effect,
+            at: candidate.at.clone(),
+            values,
+        };
+        let effects: Vec<Placed> = estimate
+            .effects
+            .iter()
+            .chain(&estimate.nominal)
+            .chain([&trial])
+            .cloned()
+            .collect();
+        let simulator = self.problem.simulator(&effects)?;
+        let mut all = Vec::new();
+        for (run, signals) in self.problem.runs.iter().enumerate() {
+            let mut predicted = simulator.predict(signals, &estimate.initial[run])?;
+            for (c, signal) in predicted.iter_mut().enumerate() {
+                let before = &self.at.discrepancy[run][c];
+                match &signals.measured[c] {
+                    Some(measured) => {
+                        for (i, p) in signal.iter_mut().enumerate() {
+                            *p = (*p - (measured[i] - before[i])) / TRIAL;
+                        }
+                    }
+                    None => signal.fill(0.0),
+                }
+            }
+            all.push(predicted);
+        }
+        Ok(all)
+    }
+
+    /// Solves (1): amplitudes and the energy bᵀâ they explain.
+    fn amplitudes(&self, columns: &[Vec<Signals>]) -> Option<(Vec<f64>, f64)> {
+        let (k, len) = (columns.len(), self.layout.len());
+        let mut cross = Mat::<f64>::zeros(len, k);
+        let mut own = Mat::<f64>::zeros(k, k);
+        let mut right = vec![0.0; k];
+        for run in 0..self.at.discrepancy.len() {
+            let index = entries(&self.layout, run);
+            for (j, column) in columns.iter().enumerate() {
+                right[j] += inner(&column[run], &self.at.discrepancy[run], &self.weights);
+                for (row, nuisance) in index.iter().zip(&self.at.columns[run]) {
+                    cross[(*row, j)] += inner(nuisance, &column[run], &self.weights);
+                }
+                for (i, other) in columns.iter().enumerate() {
+                    own[(i, j)] += inner(&other[run], &column[run], &self.weights);
+                }
+            }
+        }
+        let ridged = Mat::from_fn(len, len, |i, j| {
+            let value = self.hessian[(i, j)];
+            if i == j {
+                value * (1.0 + 1e-10) + f64::MIN_POSITIVE
+            } else {
+                value
+            }
+        });
+        let projected = if len == 0 {
+            Mat::zeros(0, k)
+        } else {
+            ridged.full_piv_lu().solve(&cross)
+        };
+        let free = Mat::from_fn(k, k, |i, j| {
+            let taken: f64 = (0..len).map(|l| cross[(l, i)] * projected[(l, j)]).sum();
+            let value = own[(i, j)] - taken;
+            if i == j { value * (1.0 + 1e-9) } else { value }
+        });
+        if (0..k).any(|i| !(free[(i, i)] > HIDDEN * own[(i, i)])) {
+            return None;
+        }
+        let b: Vec<f64> = (0..k)
+            .map(|j| {
+                let taken: f64 = (0..len).map(|l| projected[(l, j)] * self.gradient[l]).sum();
+                right[j] - taken
+            })
+            .collect();
+        let solution = free
+            .llt(Side::Lower)
+            .ok()?
+            .solve(Mat::from_fn(k, 1, |i, _| b[i]));
+        let amplitude: Vec<f64> = (0..k).map(|i| solution[(i, 0)]).collect();
+        let energy = amplitude.iter().zip(&b).map(|(a, b)| a * b).sum();
+        Some((amplitude, energy))
+    }
+}

@@ -1,0 +1,117 @@
+//! A record in the units of a model.
+
+use simgap_model::{InputKind, Model, OutputKind};
+use simgap_record::{Quantity, Record};
+
+use crate::SimulateError;
+
+/// A record in the units of a model: its inputs and, where measured, its outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// File name of the record.
+    pub name: String,
+    /// Time stamp of the first sample, s.
+    pub start_s: f64,
+    /// Sampling interval, s.
+    pub time_step_s: f64,
+    /// Number of samples.
+    pub len: usize,
+    /// One signal for each input of the model, in model units.
+    pub inputs: Vec<Vec<f64>>,
+    /// One signal for each output of the model, in model units; `None` where the record has no
+    /// such column.
+    pub measured: Vec<Option<Vec<f64>>>,
+}
+
+impl Run {
+    /// Takes from the record what the model names. Input columns are required.
+    ///
+    /// # Errors
+    /// [`SimulateError::Record`] when an input column is missing, or a unit does not fit a
+    /// quantity that has no gain.
+    pub fn new(model: &Model, record: &Record) -> Result<Run, SimulateError> {
+        let scaled = |channel: &str, quantity: Quantity, gain: Option<f64>| match gain {
+            Some(gain) => {
+                let values = &record.require(channel)?.values;
+                Ok::<_, SimulateError>(values.iter().map(|value| gain * value).collect::<Vec<_>>())
+            }
+            None => Ok(record.si_values(channel, quantity)?.into_owned()),
+        };
+        let inputs = model
+            .inputs
+            .iter()
+            .map(|input| scaled(&input.channel, input_quantity(input.kind), input.gain))
+            .collect::<Result<Vec<_>, _>>()?;
+        let measured = model
+            .outputs
+            .iter()
+            .map(|output| match record.channel(&output.channel) {
+                None => Ok(None),
+                Some(_) => {
+                    scaled(&output.channel, output_quantity(output.kind), output.gain).map(Some)
+                }
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(Run {
+            name: record.name().to_string(),
+            start_s: record.time_s().first().copied().unwrap_or(0.0),
+            time_step_s: record.time_step_s(),
+            len: record.len(),
+            inputs,
+            measured,
+        })
+    }
+
+    /// As [`Run::new`], with every output column required as well.
+    ///
+    /// # Errors
+    /// [`SimulateError::Record`] as above, and when an output column is missing.
+    pub fn with_outputs(model: &Model, record: &Record) -> Result<Run, SimulateError> {
+        for output in &model.outputs {
+            record.require(&output.channel)?;
+        }
+        Run::new(model, record)
+    }
+
+    /// A stretch of the run, on the same clock.
+    #[must_use]
+    pub fn slice(&self, range: std::ops::Range<usize>) -> Run {
+        let end = range.end.min(self.len);
+        let start = range.start.min(end);
+        let cut = |signal: &Vec<f64>| signal[start..end].to_vec();
+        Run {
+            name: self.name.clone(),
+            start_s: self.start_s + start as f64 * self.time_step_s,
+            time_step_s: self.time_step_s,
+            len: end - start,
+            inputs: self.inputs.iter().map(cut).collect(),
+            measured: self
+                .measured
+                .iter()
+                .map(|signal| signal.as_ref().map(cut))
+                .collect(),
+        }
+    }
+
+    /// Length, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.len as f64 * self.time_step_s
+    }
+}
+
+fn input_quantity(kind: InputKind) -> Quantity {
+    match kind {
+        InputKind::Force => Quantity::Force,
+        InputKind::Displacement => Quantity::Displacement,
+    }
+}
+
+fn output_quantity(kind: OutputKind) -> Quantity {
+    match kind {
+        OutputKind::Displacement => Quantity::Displacement,
+        OutputKind::Velocity => Quantity::Velocity,
+        OutputKind::Acceleration => Quantity::Acceleration,
+        OutputKind::Force => Quantity::Force,
+    }
+}
