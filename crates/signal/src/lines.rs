@@ -146,27 +146,10 @@ pub fn fit_lines(time_s: &[f64], values: &[f64], freqs_hz: &[f64]) -> Result<Lin
     }
     let rhs = Mat::from_fn(n, 1, |i, _| values[i]);
     let theta = qr.solve_lstsq(&rhs);
-    // (3)
-    let residual: Vec<f64> = (0..n)
-        .map(|i| {
-            values[i]
-                - (0..p)
-                    .map(|j| design.columns[(i, j)] * theta[(j, 0)])
-                    .sum::<f64>()
-        })
-        .collect();
+    let residual = design.residual(values, |j| theta[(j, 0)]);
     let degrees_of_freedom = n - p;
     let variance = residual.iter().map(|e| e * e).sum::<f64>() / degrees_of_freedom as f64;
-    let inverse = upper_inverse(p, |i, j| r[(i, j)]);
-    let mut covariance = vec![0.0; p * p];
-    for i in 0..p {
-        for j in 0..p {
-            let sum: f64 = (i.max(j)..p)
-                .map(|k| inverse[i * p + k] * inverse[j * p + k])
-                .sum();
-            covariance[i * p + j] = variance * sum / (design.norms[i] * design.norms[j]);
-        }
-    }
+    let covariance = design.covariance(variance, |i, j| r[(i, j)]);
     let value = |j: usize| theta[(j, 0)] / design.norms[j];
     let lines = (0..freqs_hz.len())
         .map(|k| {
@@ -243,6 +226,31 @@ impl Design {
             }
         }
         self
+    }
+
+    fn residual(&self, values: &[f64], theta: impl Fn(usize) -> f64) -> Vec<f64> {
+        let p = self.columns.ncols();
+        values
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v - (0..p).map(|j| self.columns[(i, j)] * theta(j)).sum::<f64>())
+            .collect()
+    }
+
+    /// (3), with the lengths of the columns taken out again.
+    fn covariance(&self, variance: f64, r: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let p = self.columns.ncols();
+        let inverse = upper_inverse(p, r);
+        let mut covariance = vec![0.0; p * p];
+        for i in 0..p {
+            for j in 0..p {
+                let sum: f64 = (i.max(j)..p)
+                    .map(|k| inverse[i * p + k] * inverse[j * p + k])
+                    .sum();
+                covariance[i * p + j] = variance * sum / (self.norms[i] * self.norms[j]);
+            }
+        }
+        covariance
     }
 
     fn not_separable(&self, column: usize, freqs_hz: &[f64]) -> SignalError {

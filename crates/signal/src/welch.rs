@@ -235,13 +235,18 @@ impl Plan {
     fn load(&self, segment: &[f64], part: usize, buffer: &mut [Complex64]) {
         let (mean, slope) = self.trend.line(segment);
         let mid = 0.5 * (segment.len() as f64 - 1.0);
-        for (i, ((v, w), z)) in segment.iter().zip(&self.weights).zip(buffer).enumerate() {
-            let weighed = w * (v - mean - slope * (i as f64 - mid));
+        let mut put = |i: usize, value: f64| {
             if part == 0 {
-                z.re = weighed;
+                buffer[i].re = value;
             } else {
-                z.im = weighed;
+                buffer[i].im = value;
             }
+        };
+        let weighed = segment.iter().zip(&self.weights).enumerate();
+        if slope == 0.0 {
+            weighed.for_each(|(i, (v, w))| put(i, w * (v - mean)));
+        } else {
+            weighed.for_each(|(i, (v, w))| put(i, w * (v - mean - slope * (i as f64 - mid))));
         }
     }
 

@@ -84,18 +84,7 @@ impl Window {
         let step = std::f64::consts::TAU / len as f64;
         let terms = self.cosine_terms();
         Ok((0..len)
-            .map(|n| {
-                let mut sign = -1.0;
-                terms
-                    .iter()
-                    .enumerate()
-                    .map(|(k, a)| {
-                        sign = -sign;
-                        // The product k n is reduced first: the cosine keeps its digits for long windows.
-                        sign * a * (((k * n) % len) as f64 * step).cos()
-                    })
-                    .sum()
-            })
+            .map(|n| cosine_sum(terms, (n as f64 * step).cos()))
             .collect())
     }
 
@@ -190,6 +179,17 @@ impl Window {
         };
         (-reach..=reach).map(|k| c(k) * c(m as isize - k)).sum()
     }
+}
+
+/// Σ_k (-1)^k a_k cos(kθ) from c = cos θ by cos((k+1)θ) = 2c cos(kθ) - cos((k-1)θ).
+fn cosine_sum(terms: &[f64], c: f64) -> f64 {
+    let (mut before, mut here, mut sign, mut sum) = (c, 1.0, 1.0, 0.0);
+    for a in terms {
+        sum += sign * a * here;
+        (before, here) = (here, 2.0 * c * here - before);
+        sign = -sign;
+    }
+    sum
 }
 
 /// sin(πx)/(πx).
