@@ -2,8 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::AlphaError;
+use faer::c64;
+
 use crate::error::positive;
+use crate::{AlphaError, Oscillator, RateFormula, force_gain};
 
 /// Share of the damping that a force in phase with velocity stands for,
 ///
@@ -38,6 +40,74 @@ pub fn damping_share(
     let force = 0.5 * positive("peak to peak", peak_to_peak)?;
     let velocity = TAU * positive("frequency", freq_hz)? * positive("amplitude", amplitude)?;
     Ok(force / (positive("damping", damping)? * velocity))
+}
+
+/// The unknown force that a differentiation formula makes by itself, peak to peak, of a plant
+/// that Eq. (3) describes perfectly and that moves as A sin(2πf t):
+///
+/// ```text
+/// Δα = 2 A |G(f) − G_exact(f)|,    G = m D² + c D + k
+/// ```
+///
+/// ```
+/// use simgap_alpha::{Oscillator, RateFormula, leads};
+/// use simgap_integrate::inverse::Differentiator;
+/// let plant = Oscillator { mass_kg: 1.0, damping: 0.0, stiffness: 0.0, load: 0.0 };
+/// let park = RateFormula::Scheme(Differentiator::Park);
+/// // Gain (ωh)²/6 too large, twice: 2 A ω² (ωh)²/3.
+/// let made = leads::formula_stroke(&plant, park, 1.0, 1.0 / std::f64::consts::TAU, 0.01)?;
+/// assert!((made / (2.0 * 1e-4 / 3.0) - 1.0).abs() < 0.02);
+/// # Ok::<(), simgap_alpha::AlphaError>(())
+/// ```
+///
+/// # Errors
+/// Those of [`force_gain`], [`AlphaError::Parameter`] for an amplitude that is not positive.
+pub fn formula_stroke(
+    plant: &Oscillator,
+    formula: RateFormula,
+    amplitude: f64,
+    freq_hz: f64,
+    time_step_s: f64,
+) -> Result<f64, AlphaError> {
+    let error = formula_error(plant, formula, freq_hz, time_step_s)?;
+    Ok(2.0 * positive("amplitude", amplitude)? * error.norm())
+}
+
+/// [`damping_share`] with the formula's own error taken into account: the Δc / c for which
+///
+/// ```text
+/// | G(f) − G_exact(f) + iω Δc | = Δα / (2 A)
+/// ```
+///
+/// The larger of two solutions; `None` where there is none: the formula's error in phase with
+/// displacement is then already more than the force, and damping alone cannot be the cause.
+///
+/// # Errors
+/// As [`damping_share`] and [`formula_stroke`].
+pub fn damping_share_through(
+    plant: &Oscillator,
+    formula: RateFormula,
+    peak_to_peak: f64,
+    amplitude: f64,
+    freq_hz: f64,
+    time_step_s: f64,
+) -> Result<Option<f64>, AlphaError> {
+    let per_amplitude =
+        0.5 * positive("peak to peak", peak_to_peak)? / positive("amplitude", amplitude)?;
+    let omega_c = TAU * positive("frequency", freq_hz)? * positive("damping", plant.damping)?;
+    let error = formula_error(plant, formula, freq_hz, time_step_s)?;
+    let rest = per_amplitude * per_amplitude - error.re * error.re;
+    Ok((rest >= 0.0).then(|| (rest.sqrt() - error.im) / omega_c))
+}
+
+fn formula_error(
+    plant: &Oscillator,
+    formula: RateFormula,
+    freq_hz: f64,
+    time_step_s: f64,
+) -> Result<c64, AlphaError> {
+    let with = force_gain(plant, formula, freq_hz, time_step_s)?;
+    Ok(with - force_gain(plant, RateFormula::Exact, freq_hz, time_step_s)?)
 }
 
 /// The damping ratio at which the damped frequency is a given one: ζ = √(1 − (f_d/f_n)²).

@@ -215,6 +215,37 @@ fn val_park_leads() {
     assert!((mass - 33_615.4).abs() < 0.1);
 }
 
+/// The share found through a formula gives the stroke back when it is put into the plant.
+#[test]
+fn verify_damping_share_through_a_formula() {
+    let (h, amplitude, freq, stroke) = (0.01, 0.002, 3.0, 10345.57);
+    let share = leads::damping_share_through(&PAPER, PARK, stroke, amplitude, freq, h)
+        .unwrap()
+        .unwrap();
+    let true_damping = (1.0 - share) * PAPER.damping;
+    let omega = TAU * freq;
+    let (y, force): (Vec<f64>, Vec<f64>) = (0..2000)
+        .map(|n| {
+            let (sin, cos) = (omega * f64::from(n) * h).sin_cos();
+            let elastic = (PAPER.stiffness - PAPER.mass_kg * omega * omega) * amplitude * sin;
+            (
+                amplitude * sin,
+                elastic + true_damping * omega * amplitude * cos,
+            )
+        })
+        .unzip();
+    let found = unknown_force(&PAPER, &y, &force, h, Differentiator::Park).unwrap();
+    let fit = fit_fourier(&found.unknown_force, h, found.settling_samples, freq, 1).unwrap();
+    // The grid of the peak-to-peak value misses 4e-5 at most.
+    assert!((fit.peak_to_peak() / stroke - 1.0).abs() < 1e-4);
+    let impossible = leads::damping_share_through(&PAPER, PARK, 10.0, amplitude, 6.0, h);
+    assert_eq!(impossible.unwrap(), None);
+    let plain = leads::damping_share(stroke, PAPER.damping, amplitude, freq).unwrap();
+    let exact = RateFormula::Exact;
+    let through = leads::damping_share_through(&PAPER, exact, stroke, amplitude, freq, h);
+    assert!((through.unwrap().unwrap() / plain - 1.0).abs() < 1e-12);
+}
+
 /// A small generator of normal numbers: the sum of twelve uniform ones less six.
 fn normal(state: &mut u64) -> f64 {
     (0..12)

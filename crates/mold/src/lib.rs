@@ -11,14 +11,16 @@
 mod error;
 mod noise;
 mod one_dof;
+mod plan;
 mod rebuild;
 mod restored;
 mod two_dof;
 
 pub use error::MoldError;
 pub use one_dof::{OneDof, STANDARD_GRAVITY};
-pub use rebuild::{
-    DISPLACEMENT_CHANNEL, FORCE_CHANNEL, HARMONIC_SHARE, Reading, RebuildPlan, RebuiltRecord,
-    published_line_amplitude, published_plan, rebuild,
+pub use plan::{
+    DISPLACEMENT_CHANNEL, Derivative, FORCE_CHANNEL, HARMONIC_SHARE, Reading, RebuildPlan,
+    published_line_amplitude, published_plan,
 };
+pub use rebuild::{RebuiltRecord, rebuild};
 pub use two_dof::TwoDof;

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 use simgap_mold::{
-    DISPLACEMENT_CHANNEL, FORCE_CHANNEL, MoldError, OneDof, Reading, STANDARD_GRAVITY, TwoDof,
-    published_line_amplitude, published_plan, rebuild,
+    DISPLACEMENT_CHANNEL, Derivative, FORCE_CHANNEL, MoldError, OneDof, Reading, STANDARD_GRAVITY,
+    TwoDof, published_line_amplitude, published_plan, rebuild,
 };
 
 /// Half a unit of the third decimal, the precision the notes on the paper are checked to.
@@ -205,6 +205,47 @@ fn val_park_table2_lines_of_the_rebuilt_pressure() {
         }
         let high = row.displacement_high.as_ref().unwrap().si();
         assert!(line(&force, 100.0, high) < 1e-6, "{f} Hz: {high} Hz");
+    }
+}
+
+/// With exact derivatives the force of a plan is Eq. (3) of the smooth motion; with Park's it is
+/// what gives Table 3 back when Park's formula is applied at the paper's step.
+#[test]
+fn verify_force_follows_eq_3() {
+    let mold = OneDof::published().unwrap();
+    let mut plan = published_plan(2.0, 100.0, Reading::None).unwrap();
+    assert_eq!(plan.derivative, Derivative::Park { time_step_s: 0.01 });
+    let of = |plan: &simgap_mold::RebuildPlan, channel: &str| {
+        let rebuilt = rebuild(&mold, plan.clone()).unwrap();
+        rebuilt.record.require(channel).unwrap().values.clone()
+    };
+    let y = of(&plan, DISPLACEMENT_CHANNEL);
+    let unknown = |n: usize| {
+        plan.centre_force + 0.5 * plan.stroke_force * (TAU * 2.0 * n as f64 * 0.01).cos()
+    };
+    let weight = 33_000.0 * STANDARD_GRAVITY;
+
+    let v = simgap_integrate::inverse::park_derivative(&y, 0.01).unwrap();
+    let a = simgap_integrate::inverse::park_derivative(&v, 0.01).unwrap();
+    let force = of(&plan, FORCE_CHANNEL);
+    for n in 10..y.len() {
+        let alpha =
+            33_000.0 * a[n] + mold.damping() * v[n] + mold.stiffness() * y[n] - force[n] + weight;
+        // Rounding of y, 1e-16 · 2 mm, through m/h² and m g.
+        assert!((alpha - unknown(n)).abs() < 1e-6, "sample {n}: {alpha}");
+    }
+
+    plan.derivative = Derivative::Exact;
+    plan.lines_hz.clear();
+    let omega = TAU * 2.0;
+    let exact = of(&plan, FORCE_CHANNEL);
+    for (n, force) in exact.iter().enumerate() {
+        let (sin, cos) = (omega * n as f64 * 0.01).sin_cos();
+        let expected = (mold.stiffness() - 33_000.0 * omega * omega) * 0.002 * sin
+            + mold.damping() * omega * 0.002 * cos
+            + weight
+            - unknown(n);
+        assert!((force - expected).abs() < 1e-6);
     }
 }
 
