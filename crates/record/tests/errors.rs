@@ -186,12 +186,13 @@ fn verify_limits_stop_the_reading() {
     let message = message_of(format!("t [s],y [m]\n0,{long}\n").as_bytes());
     insta::assert_snapshot!(message, @r"A.csv: line 2: longer than 1048576 bytes, which is the limit; one row of numbers per line is needed");
     // An endless file: the reader must stop by itself.
-    let endless = EndlessRows {
+    let mut endless = EndlessRows {
         header: b"t [s]\n",
         row: 0,
     };
-    let message = parse_csv("A.csv", endless).unwrap_err().to_string();
+    let message = parse_csv("A.csv", &mut endless).unwrap_err().to_string();
     insta::assert_snapshot!(message, @r"A.csv: more than 5000000 rows found, which is the limit; split the record or lower its sample rate");
+    assert_eq!(endless.row, MAX_ROWS as u64 + 1);
     let too_long = vec![0.0; MAX_ROWS + 1];
     assert!(matches!(
         Record::new("A", too_long, vec![]),

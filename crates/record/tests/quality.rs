@@ -219,6 +219,18 @@ fn verify_noise_free_periodic_inputs_raise_no_alarm() {
     }
 }
 
+/// Eleven samples in half a period: the eleventh harmonic of the rounding is an alternation.
+#[test]
+fn verify_rounding_of_a_periodic_motion_is_no_alternation() {
+    for step in [0.0304, 0.01, 0.051] {
+        let found = defects(quantised(&noisy_sine(1186, 1.0 / 22.0, 1e-4, 1), step));
+        assert!(
+            matches!(found[..], [Defect::Quantised { .. }]),
+            "{step}: {found:?}"
+        );
+    }
+}
+
 #[test]
 fn verify_a_flat_channel_is_flat_and_nothing_else() {
     assert_eq!(defects(vec![3.5; 100]), [Defect::Flat { value: 3.5 }]);
