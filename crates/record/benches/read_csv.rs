@@ -1,9 +1,9 @@
-//! Reading and writing speed of CSV, in rows and bytes per second.
+//! Speed of reading, checking and writing, in rows and bytes per second.
 #![allow(clippy::unwrap_used)]
 
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
-use simgap_record::{parse_csv, write_csv_atomic};
+use simgap_record::{parse_csv, quality, write_csv_atomic};
 
 const ROWS: usize = 100_000;
 
@@ -65,4 +65,12 @@ fn write_rows(bencher: Bencher) {
     bencher
         .counter(ItemsCount::new(ROWS))
         .bench(|| write_csv_atomic(&path, &headers(), &views).unwrap());
+}
+
+#[divan::bench(sample_count = 10)]
+fn check_quality(bencher: Bencher) {
+    let record = parse_csv("A.csv", &text(ROWS)[..]).unwrap();
+    bencher
+        .counter(ItemsCount::new(ROWS))
+        .bench(|| quality(divan::black_box(&record)));
 }
