@@ -115,6 +115,14 @@ pub enum IntegrateError {
         /// End of the time grid, s.
         end_s: f64,
     },
+    /// The eigenvalues of an amplification matrix could not be computed.
+    #[error(
+        "the eigenvalues of a {rows} x {rows} matrix did not converge, needed: finite entries of moderate size"
+    )]
+    Eigenvalues {
+        /// Rows of the matrix.
+        rows: usize,
+    },
 }
 
 /// Result of this crate.

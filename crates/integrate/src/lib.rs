@@ -4,6 +4,7 @@
 //! - [`inverse`]: measured displacement to velocity and acceleration.
 
 mod error;
+pub mod exact;
 mod forward;
 pub mod inverse;
 mod motion;
@@ -11,7 +12,9 @@ mod problem;
 
 pub use error::{IntegrateError, Result};
 pub use forward::{
-    GeneralizedAlpha, Method, Newmark, generalized_alpha, newmark, park, runge_kutta, simulate,
+    AdaptiveTolerance, Dissipation, GeneralizedAlpha, Method, Newmark, amplification_matrix,
+    dormand_prince, generalized_alpha, newmark, numerical_dissipation, park, runge_kutta, simulate,
+    spectral_radius,
 };
 pub use motion::{Motion, Solution, Work};
 pub use problem::{Excitation, NonlinearForce, Problem, Tangent, TimeGrid};

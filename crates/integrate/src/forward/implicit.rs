@@ -22,6 +22,9 @@ use crate::problem::Tangent;
 /// roundings, and far below the error of any step that is worth taking.
 const NEWTON_TOLERANCE: f64 = 1e-11;
 
+/// Residual, N, below which nothing is left to balance: the range where numbers lose their digits.
+const RESIDUAL_FLOOR_N: f64 = 1e-290;
+
 /// Corrections before giving up. A smooth force needs three to five.
 const NEWTON_LIMIT: usize = 50;
 
@@ -201,7 +204,8 @@ impl Implicit {
 
     fn tolerance(&mut self, balance: &Balance<'_, '_>, at: Instant) -> f64 {
         let trial = &self.trial;
-        NEWTON_TOLERANCE * balance.size(at, &trial.x, &trial.v, &trial.a, &mut self.scratch)
+        let size = balance.size(at, &trial.x, &trial.v, &trial.a, &mut self.scratch);
+        (NEWTON_TOLERANCE * size).max(RESIDUAL_FLOOR_N)
     }
 
     /// Equation (3) at the trial point, factored.

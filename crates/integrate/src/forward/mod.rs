@@ -1,12 +1,18 @@
 //! From forces to motion.
 
+mod amplification;
 mod balance;
+mod dormand_prince;
 mod generalized_alpha;
 mod implicit;
 mod lu;
 mod park;
 mod runge_kutta;
 
+pub use amplification::{
+    Dissipation, amplification_matrix, numerical_dissipation, spectral_radius,
+};
+pub use dormand_prince::{AdaptiveTolerance, dormand_prince};
 pub use generalized_alpha::{GeneralizedAlpha, Newmark, generalized_alpha, newmark};
 pub use park::park;
 pub use runge_kutta::runge_kutta;
@@ -29,6 +35,8 @@ pub enum Method {
     GeneralizedAlpha(GeneralizedAlpha),
     /// [`runge_kutta`].
     RungeKutta4,
+    /// [`dormand_prince`].
+    DormandPrince(AdaptiveTolerance),
 }
 
 /// Simulates a problem on a time grid by the method named.
@@ -55,6 +63,7 @@ pub fn simulate(problem: &Problem<'_>, grid: &TimeGrid, method: Method) -> Resul
         Method::Newmark(parameters) => newmark(problem, grid, parameters),
         Method::GeneralizedAlpha(parameters) => generalized_alpha(problem, grid, parameters),
         Method::RungeKutta4 => runge_kutta(problem, grid),
+        Method::DormandPrince(tolerance) => dormand_prince(problem, grid, tolerance),
     }
 }
 

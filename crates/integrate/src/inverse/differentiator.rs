@@ -5,7 +5,7 @@ use crate::error::{IntegrateError, Result, check_finite, check_length, check_tim
 /// Park's formula times h: weights of y_n, y_(n−1), y_(n−2), y_(n−3) (Park 1975).
 ///
 /// It is the mean of the backward differentiation formulas of orders two and three.
-pub const PARK_WEIGHTS: [f64; 4] = [10.0 / 6.0, -15.0 / 6.0, 6.0 / 6.0, -1.0 / 6.0];
+pub const PARK_WEIGHTS: [f64; 4] = [10.0 / 6.0, -15.0 / 6.0, 1.0, -1.0 / 6.0];
 
 /// Backward Euler times h: weights of y_n, y_(n−1).
 pub const BACKWARD_EULER_WEIGHTS: [f64; 2] = [1.0, -1.0];

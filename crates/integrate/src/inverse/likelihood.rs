@@ -1,6 +1,7 @@
 //! Noise parameters of the smoother by maximum likelihood.
 
-use super::smoother::{NoiseModel, check_record, correct, predict, start, unit_step_model};
+use super::flat_start::start;
+use super::smoother::{NoiseModel, check_record, correct, predict, unit_step_model};
 use crate::error::{IntegrateError, Result};
 
 /// A noise model fitted to a record.

@@ -8,7 +8,9 @@
 //! [`transfer`] and [`smoother_transfer`].
 
 mod differentiator;
+mod flat_start;
 mod likelihood;
+mod matrix3;
 mod smoother;
 mod transfer;
 

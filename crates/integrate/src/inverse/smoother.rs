@@ -3,10 +3,9 @@
 //! Everything inside runs in the units of the model, h = 1 and σ = 1, with the state
 //! (x, h ẋ, h² ẍ)/σ. Only one number is then left, the smoothness λ = q h⁵ / σ².
 
+use super::flat_start::start;
+use super::matrix3::{Matrix, Vector, apply, multiply, solve_right, transpose};
 use crate::error::{IntegrateError, Result, check_finite, check_length, check_time_step};
-
-pub(super) type Vector = [f64; 3];
-pub(super) type Matrix = [[f64; 3]; 3];
 
 /// Least number of samples: three fix the state, the fourth is the first that can surprise.
 pub(super) const LEAST_SAMPLES: usize = 4;
@@ -201,9 +200,6 @@ pub(super) fn unit_step_model(smoothness: f64) -> (Matrix, Matrix) {
     )
 }
 
-/// F⁻¹ for h = 1.
-const BACK_STEP: Matrix = [[1.0, -1.0, 0.5], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0]];
-
 /// Mean and covariance of the state at one sample.
 pub(super) type Estimate = (Vector, Matrix);
 
@@ -211,96 +207,6 @@ pub(super) type Estimate = (Vector, Matrix);
 struct Filtered {
     estimate: Estimate,
     prediction: Estimate,
-}
-
-/// The state at samples 0, 1, 2 from the first three samples alone, flat prior.
-pub(super) struct Start {
-    /// Mean and covariance at samples 0, 1, 2.
-    pub(super) estimates: [Estimate; 3],
-    /// Covariance of the state at samples 0 and 1 with the state at sample 2.
-    cross: [Matrix; 2],
-}
-
-/// Number of independent disturbances in the first three samples: three measurement errors and
-/// two steps of process noise.
-const DISTURBANCES: usize = 9;
-
-/// Solves the first three samples for the state.
-///
-/// ```text
-/// s_1 = F⁻¹ (s_2 − w_2)     s_0 = F⁻¹ (s_1 − w_1)     y_k = e₁ᵀ s_k + e_k
-/// ```
-///
-/// so y = A s_2 − N d with d = (e_0, e_1, e_2, w_1, w_2) up to sign, and s_2 = A⁻¹ (y + N d).
-/// Each state is its mean plus a matrix times d.
-pub(super) fn start(first: Vector, process: &Matrix) -> Start {
-    // A has rows e₁ᵀF⁻², e₁ᵀF⁻¹, e₁ᵀ; its inverse is the parabola through three points.
-    let inverse: Matrix = [[0.0, 0.0, 1.0], [0.5, -2.0, 1.5], [1.0, -2.0, 1.0]];
-    let back_two = multiply(&BACK_STEP, &BACK_STEP);
-    // N: what d adds to A s_2 in y; e_k directly, w_2 through F⁻¹ and F⁻², w_1 through F⁻¹.
-    let mut noise = [[0.0; DISTURBANCES]; 3];
-    for k in 0..3 {
-        noise[k][k] = -1.0;
-        noise[0][3 + k] = BACK_STEP[0][k];
-        noise[0][6 + k] = back_two[0][k];
-        noise[1][6 + k] = BACK_STEP[0][k];
-    }
-    let map_2 = map_disturbances(&inverse, &noise);
-    let map_1 = map_disturbances(&BACK_STEP, &subtract_step(map_2, 6));
-    let map_0 = map_disturbances(&BACK_STEP, &subtract_step(map_1, 3));
-    let mean_2 = apply(&inverse, &first);
-    let mean_1 = apply(&BACK_STEP, &mean_2);
-    let mean_0 = apply(&BACK_STEP, &mean_1);
-    let covariance = |a: &Map, b: &Map| disturbance_covariance(a, b, process);
-    Start {
-        estimates: [
-            (mean_0, covariance(&map_0, &map_0)),
-            (mean_1, covariance(&map_1, &map_1)),
-            (mean_2, covariance(&map_2, &map_2)),
-        ],
-        cross: [covariance(&map_0, &map_2), covariance(&map_1, &map_2)],
-    }
-}
-
-type Map = [[f64; DISTURBANCES]; 3];
-
-/// The 3 × 9 product of a matrix and a map.
-fn map_disturbances(matrix: &Matrix, map: &Map) -> Map {
-    let mut out = [[0.0; DISTURBANCES]; 3];
-    for i in 0..3 {
-        for j in 0..DISTURBANCES {
-            out[i][j] = (0..3).map(|k| matrix[i][k] * map[k][j]).sum();
-        }
-    }
-    out
-}
-
-/// The map of s − w, where w takes columns `first` to `first + 2`.
-fn subtract_step(mut map: Map, first: usize) -> Map {
-    for k in 0..3 {
-        map[k][first + k] -= 1.0;
-    }
-    map
-}
-
-/// a D bᵀ with D = diag(1, 1, 1, Q, Q).
-fn disturbance_covariance(a: &Map, b: &Map, process: &Matrix) -> Matrix {
-    let mut out = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            let measured: f64 = (0..3).map(|k| a[i][k] * b[j][k]).sum();
-            let mut driven = 0.0;
-            for block in [3, 6] {
-                for k in 0..3 {
-                    for l in 0..3 {
-                        driven += a[i][block + k] * process[k][l] * b[j][block + l];
-                    }
-                }
-            }
-            out[i][j] = measured + driven;
-        }
-    }
-    out
 }
 
 /// Prediction to the next sample: F s and F P Fᵀ + Q.
@@ -395,56 +301,4 @@ fn step_back(earlier: &Estimate, cross: &Matrix, before: &Estimate, after: &Esti
         }
     }
     (mean, covariance)
-}
-
-/// B P⁻¹ for symmetric positive definite P, by Cholesky.
-fn solve_right(b: &Matrix, p: &Matrix) -> Matrix {
-    let mut l = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..=i {
-            let sum: f64 = p[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
-            // P holds Q, which is positive definite; the floor only guards the last bits.
-            l[i][j] = if i == j {
-                sum.max(p[i][i] * f64::EPSILON).sqrt()
-            } else {
-                sum / l[j][j]
-            };
-        }
-    }
-    b.map(|row| {
-        let mut x = row;
-        for i in 0..3 {
-            let sum: f64 = (0..i).map(|k| l[i][k] * x[k]).sum();
-            x[i] = (x[i] - sum) / l[i][i];
-        }
-        for i in (0..3).rev() {
-            let sum: f64 = (i + 1..3).map(|k| l[k][i] * x[k]).sum();
-            x[i] = (x[i] - sum) / l[i][i];
-        }
-        x
-    })
-}
-
-fn apply(matrix: &Matrix, vector: &Vector) -> Vector {
-    matrix.map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum())
-}
-
-fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
-    let mut out = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            out[i][j] = (0..3).map(|k| a[i][k] * b[k][j]).sum();
-        }
-    }
-    out
-}
-
-fn transpose(a: &Matrix) -> Matrix {
-    let mut out = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            out[j][i] = a[i][j];
-        }
-    }
-    out
 }
