@@ -77,6 +77,22 @@ fn verify_pure_scale() {
 }
 
 #[test]
+fn verify_warping_reaches_less_than_a_tenth() {
+    // A tall pulse in place, a small one early and one late by d: warping mends both while
+    // d < 0.1 · 200 samples, and no common shift does.
+    let curve = |d: usize| -> Vec<f64> {
+        let mut x = vec![0.0; 200];
+        (x[100], x[50 - d], x[150 + d]) = (3.0, 1.0, 1.0);
+        x
+    };
+    let within = iso18571(&curve(0), &curve(19)).unwrap();
+    assert_eq!((within.delay_samples, within.magnitude), (0, 1.0));
+    let beyond = iso18571(&curve(0), &curve(20)).unwrap();
+    assert_eq!(beyond.delay_samples, 0);
+    assert!(beyond.magnitude < 0.9, "{beyond:?}");
+}
+
+#[test]
 fn verify_opposite_curve_scores_low() {
     let t: Vec<f64> = (0..300).map(|n| f64::from(n) - 149.5).collect();
     let c: Vec<f64> = t.iter().map(|v| -v).collect();

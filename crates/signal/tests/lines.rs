@@ -114,6 +114,29 @@ fn verify_monte_carlo_coverage_of_close_lines() {
 }
 
 #[test]
+fn verify_chi_square_is_what_the_line_takes_from_the_residual() {
+    // (a, b) C⁻¹ (a, b)ᵀ = (RSS without the line - RSS with it) / s², exactly; 1.3 periods in the record, so
+    // that a and b are correlated.
+    let t = even_times(60, 60.0);
+    let v = Noise::new(6).normals(60);
+    let with = fit_lines(&t, &v, &[9.0, 1.3]).unwrap();
+    let without = fit_lines(&t, &v, &[9.0]).unwrap();
+    let rss = |r: &[f64]| r.iter().map(|e| e * e).sum::<f64>();
+    let want = (rss(&without.residual) - rss(&with.residual)) / with.residual_std.powi(2);
+    let line = with.lines[1];
+    assert!(
+        (line.chi_square / want - 1.0).abs() < 1e-9,
+        "{} {want}",
+        line.chi_square
+    );
+    let correlation = with.covariance(4, 5).unwrap() / (line.cosine_std * line.sine_std);
+    assert!(
+        correlation.abs() > 0.1,
+        "the test needs correlated coefficients, not {correlation}"
+    );
+}
+
+#[test]
 fn verify_lines_that_cannot_be_told_apart_are_named() {
     let t = even_times(200, 100.0);
     let v = Noise::new(4).normals(200);

@@ -92,6 +92,15 @@ proptest! {
     }
 
     #[test]
+    fn prop_nrmse_ignores_common_offset_and_scale(seed in 0u64..1000, offset in -9.0..9.0f64, scale in 0.1..9.0f64) {
+        let mut noise = Noise::new(seed);
+        let (m, p) = (noise.normals(50), noise.normals(50));
+        let map = |x: &[f64]| x.iter().map(|v| offset + scale * v).collect::<Vec<f64>>();
+        let (a, b) = (nrmse(&m, &p).unwrap(), nrmse(&map(&m), &map(&p)).unwrap());
+        prop_assert!((a / b - 1.0).abs() < 1e-11, "{} {}", a, b);
+    }
+
+    #[test]
     fn prop_phase_ignores_scale(seed in 0u64..1000, scale in 0.01..100.0f64) {
         let mut noise = Noise::new(seed);
         let (m, p) = (noise.normals(50), noise.normals(50));
