@@ -39,6 +39,8 @@ pub(super) struct Balance<'p, 'a> {
     pub(super) work: Work,
     mass_factor: Lu,
     restoring: Vec<f64>,
+    /// Sampled force, sample after sample; empty unless the excitation is sampled.
+    samples: Vec<f64>,
 }
 
 impl<'p, 'a> Balance<'p, 'a> {
@@ -56,13 +58,21 @@ impl<'p, 'a> Balance<'p, 'a> {
             },
             mass_factor,
             restoring: vec![0.0; n],
+            samples: match problem.excitation() {
+                Excitation::Sampled(samples) => samples
+                    .col_iter()
+                    .flat_map(|col| col.iter())
+                    .copied()
+                    .collect(),
+                Excitation::None | Excitation::Function(_) => Vec::new(),
+            },
         })
     }
 
     /// f(t) − C ẋ − K x − g(x, ẋ, t).
     pub(super) fn unbalanced(&mut self, at: Instant, x: &[f64], v: &[f64], out: &mut [f64]) {
         self.work.right_hand_sides += 1;
-        excite(self.problem.excitation(), at, out);
+        self.excite(at, out);
         let n = x.len();
         let rows = self.problem.damping().chunks_exact(n);
         for ((force, c), k) in out
@@ -101,7 +111,7 @@ impl<'p, 'a> Balance<'p, 'a> {
         scratch: &mut [f64],
     ) -> f64 {
         let n = x.len();
-        excite(self.problem.excitation(), at, scratch);
+        self.excite(at, scratch);
         let problem = self.problem;
         let mut largest = 0.0_f64;
         for i in 0..n {
@@ -119,19 +129,21 @@ impl<'p, 'a> Balance<'p, 'a> {
         }
         largest
     }
-}
 
-/// f(t); between samples on a straight line.
-fn excite(excitation: Excitation<'_>, at: Instant, out: &mut [f64]) {
-    match excitation {
-        Excitation::None => out.fill(0.0),
-        Excitation::Function(function) => function(at.time_s, out),
-        Excitation::Sampled(samples) => {
-            // Past the last sample there is no line to go along; rounding may ask for it.
-            let next = (at.sample + 1).min(samples.ncols() - 1);
-            let (left, right) = (samples.col(at.sample), samples.col(next));
-            for (i, force) in out.iter_mut().enumerate() {
-                *force = left[i] + at.fraction * (right[i] - left[i]);
+    /// f(t); between samples on a straight line.
+    fn excite(&self, at: Instant, out: &mut [f64]) {
+        match self.problem.excitation() {
+            Excitation::None => out.fill(0.0),
+            Excitation::Function(function) => function(at.time_s, out),
+            Excitation::Sampled(_) => {
+                let n = out.len();
+                let from = n * at.sample;
+                let left = &self.samples[from..from + n];
+                // Past the last sample there is no line to go along; rounding may ask for it.
+                let right = self.samples.get(from + n..from + 2 * n).unwrap_or(left);
+                for ((force, a), b) in out.iter_mut().zip(left).zip(right) {
+                    *force = a + at.fraction * (b - a);
+                }
             }
         }
     }

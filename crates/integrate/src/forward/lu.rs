@@ -11,6 +11,8 @@ pub(super) struct Lu {
     n: usize,
     entries: Vec<f64>,
     order: Vec<usize>,
+    /// One over each pivot.
+    reciprocals: Vec<f64>,
     scratch: Vec<f64>,
 }
 
@@ -21,6 +23,7 @@ impl Lu {
             n,
             entries: vec![0.0; n * n],
             order: (0..n).collect(),
+            reciprocals: vec![0.0; n],
             scratch: vec![0.0; n],
         }
     }
@@ -53,6 +56,7 @@ impl Lu {
                     needed,
                 });
             }
+            self.reciprocals[k] = 1.0 / pivot;
             if best != k {
                 self.order.swap(best, k);
                 for j in 0..n {
@@ -74,23 +78,18 @@ impl Lu {
     pub(super) fn solve(&mut self, b: &mut [f64]) {
         let n = self.n;
         let x = &mut self.scratch;
-        for i in 0..n {
-            let row = &self.entries[i * n..(i + 1) * n];
-            let mut sum = b[self.order[i]];
-            for j in 0..i {
-                sum -= row[j] * x[j];
-            }
-            x[i] = sum;
+        for (i, row) in self.entries.chunks_exact(n).enumerate() {
+            let known: f64 = row[..i].iter().zip(x.iter()).map(|(l, y)| l * y).sum();
+            x[i] = b[self.order[i]] - known;
         }
-        for i in (0..n).rev() {
-            let row = &self.entries[i * n..(i + 1) * n];
-            let mut sum = x[i];
-            for j in i + 1..n {
-                sum -= row[j] * x[j];
-            }
-            x[i] = sum / row[i];
+        for (i, row) in self.entries.chunks_exact(n).enumerate().rev() {
+            let known: f64 = row[i + 1..]
+                .iter()
+                .zip(&b[i + 1..])
+                .map(|(u, y)| u * y)
+                .sum();
+            b[i] = (x[i] - known) * self.reciprocals[i];
         }
-        b.copy_from_slice(x);
     }
 }
 
