@@ -1,7 +1,7 @@
 //! Forward simulation of two masses under a sampled force, 60 s at 1 kHz.
 //!
-//! `cargo bench -p simgap-integrate --bench forward` prints ns per sample (`ns/item` is the inverse
-//! of the throughput shown) and, first, a table of error against a fine reference.
+//! `cargo bench -p simgap-integrate --bench forward` prints a table of error and ns per sample
+//! against a fine reference, then divan's statistics with the number of allocations.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use std::time::Instant;
@@ -13,6 +13,10 @@ use simgap_integrate::{
     simulate,
 };
 use simgap_model::StructuralMatrices;
+
+/// Counts allocations: a handful per simulation, none per step.
+#[global_allocator]
+static ALLOCATIONS: divan::AllocProfiler = divan::AllocProfiler::system();
 
 const SAMPLES: usize = 60_000;
 const STEP_S: f64 = 1e-3;

@@ -29,6 +29,18 @@ pub enum IntegrateError {
         /// The value found.
         found: f64,
     },
+    /// An entry of a matrix or of the initial state is NaN or infinite.
+    #[error("{what} is {found} at row {row}, column {column}, needed: finite")]
+    EntryNotFinite {
+        /// Which matrix or vector.
+        what: &'static str,
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+        /// The value found.
+        found: f64,
+    },
     /// A matrix or vector of the wrong size.
     #[error("{what} is {found_rows} x {found_cols}, needed: {needed_rows} x {needed_cols}")]
     Shape {

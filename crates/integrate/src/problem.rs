@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use simgap_model::StructuralMatrices;
 
-use crate::error::{IntegrateError, Result, check_finite, check_length, check_time_step};
+use crate::error::{IntegrateError, Result, check_length, check_time_step};
 
 /// A force of the motion, written to the left side of the equation of motion.
 ///
@@ -95,8 +95,8 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     ///
-    /// [`IntegrateError::Shape`] unless all three are n × n with n ≥ 1,
-    /// [`IntegrateError::NotFinite`].
+    /// [`IntegrateError::TooFewSamples`] for no degree of freedom, [`IntegrateError::Shape`] unless
+    /// all three are n × n, [`IntegrateError::EntryNotFinite`].
     pub fn new(matrices: &StructuralMatrices) -> Result<Self> {
         let n = matrices.dof_count();
         check_length("the list of degrees of freedom", n, 1)?;
@@ -116,14 +116,14 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     ///
-    /// [`IntegrateError::Shape`], [`IntegrateError::NotFinite`].
+    /// [`IntegrateError::Shape`], [`IntegrateError::EntryNotFinite`].
     pub fn with_initial_state(mut self, displacement: &[f64], velocity: &[f64]) -> Result<Self> {
         for (what, values) in [
             ("the initial displacement", displacement),
             ("the initial velocity", velocity),
         ] {
             check_shape(what, (values.len(), 1), (self.dof_count, 1))?;
-            check_finite(what, values)?;
+            check_entries(what, values, 1)?;
         }
         self.initial_displacement.copy_from_slice(displacement);
         self.initial_velocity.copy_from_slice(velocity);
@@ -316,12 +316,19 @@ fn check_shape(what: &'static str, found: (usize, usize), needed: (usize, usize)
 fn row_major(what: &'static str, matrix: &Mat<f64>, n: usize) -> Result<Vec<f64>> {
     check_shape(what, (matrix.nrows(), matrix.ncols()), (n, n))?;
     let flat: Vec<f64> = (0..n * n).map(|at| matrix[(at / n, at % n)]).collect();
-    match flat.iter().position(|value| !value.is_finite()) {
-        None => Ok(flat),
-        Some(at) => Err(IntegrateError::NotFinite {
+    check_entries(what, &flat, n)?;
+    Ok(flat)
+}
+
+/// Refuses an entry that is not finite; `columns` of them make a row.
+fn check_entries(what: &'static str, entries: &[f64], columns: usize) -> Result<()> {
+    match entries.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(at) => Err(IntegrateError::EntryNotFinite {
             what,
-            sample: at % n,
-            found: flat[at],
+            row: at / columns,
+            column: at % columns,
+            found: entries[at],
         }),
     }
 }

@@ -254,7 +254,7 @@ fn verify_refusals_name_what_was_found() {
     broken.stiffness_matrix[(0, 0)] = f64::INFINITY;
     assert_eq!(
         Problem::new(&broken).map(|_| ()).unwrap_err().to_string(),
-        "the stiffness matrix is inf at sample 0, needed: finite"
+        "the stiffness matrix is inf at row 0, column 0, needed: finite"
     );
     assert_eq!(
         TimeGrid::new(0.0, -1.0, 3).unwrap_err().to_string(),

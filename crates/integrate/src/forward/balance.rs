@@ -58,14 +58,7 @@ impl<'p, 'a> Balance<'p, 'a> {
             },
             mass_factor,
             restoring: vec![0.0; n],
-            samples: match problem.excitation() {
-                Excitation::Sampled(samples) => samples
-                    .col_iter()
-                    .flat_map(|col| col.iter())
-                    .copied()
-                    .collect(),
-                Excitation::None | Excitation::Function(_) => Vec::new(),
-            },
+            samples: flat_samples(problem.excitation()),
         })
     }
 
@@ -147,4 +140,16 @@ impl<'p, 'a> Balance<'p, 'a> {
             }
         }
     }
+}
+
+/// A sampled force as one slice, sample after sample.
+fn flat_samples(excitation: Excitation<'_>) -> Vec<f64> {
+    let Excitation::Sampled(samples) = excitation else {
+        return Vec::new();
+    };
+    let mut flat = Vec::with_capacity(samples.nrows() * samples.ncols());
+    for column in samples.col_iter() {
+        flat.extend(column.iter());
+    }
+    flat
 }
