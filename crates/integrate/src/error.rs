@@ -95,6 +95,14 @@ pub enum IntegrateError {
         /// What it must come down to, N.
         tolerance_n: f64,
     },
+    /// The forces of a step are NaN or infinite where Newton's iteration starts.
+    #[error("the forces add up to {found} at t = {time_s} s, needed: finite")]
+    ForceNotFinite {
+        /// Time of the step, s.
+        time_s: f64,
+        /// Largest entry of the residual.
+        found: f64,
+    },
     /// The motion grew out of the range of numbers.
     #[error(
         "the motion is not finite at t = {time_s} s, needed: a stable step, found {time_step_s} s"

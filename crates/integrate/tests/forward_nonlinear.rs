@@ -213,6 +213,13 @@ fn verify_refusals_name_what_was_found() {
         "{message}"
     );
 
+    let lost = |_t: f64, _x: &[f64], _v: &[f64], g: &mut [f64]| g[0] = f64::NAN;
+    let problem = Problem::new(&base).unwrap().with_nonlinear_force(&lost);
+    assert_eq!(
+        refused(simulate(&problem, &grid, trapezoidal)),
+        "the forces add up to NaN at t = 0.1 s, needed: finite"
+    );
+
     let mut massless = oscillator(1.0, 0.0);
     massless.mass_matrix[(0, 0)] = 0.0;
     let problem = Problem::new(&massless).unwrap();

@@ -250,6 +250,8 @@ fn verify_refusals_name_what_was_found() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn prop_differentiation_is_linear_and_forgets_the_offset(
         a in proptest::collection::vec(-1.0..1.0_f64, 12),

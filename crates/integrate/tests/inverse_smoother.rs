@@ -316,3 +316,33 @@ fn regress_error_on_a_noisy_sine() {
     table += &format!("fitted noise {:.2e} m", fit.noise.measurement_std());
     insta::assert_snapshot!(table);
 }
+
+/// Gain over the exact factor for three strengths of smoothing; the phase is exact everywhere.
+#[test]
+fn regress_smoother_gain_up_to_nyquist() {
+    let h = 0.01_f64;
+    let mut table = String::from("h = 0.01 s; gain over exact factor of x, v, a for q h^5/sigma^2");
+    table +=
+        "\n f Hz                       1e-6                       1e-2                        1e2";
+    for freq_hz in [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 40.0, 49.0] {
+        table += &format!("\n{freq_hz:>5}");
+        let omega = std::f64::consts::TAU * freq_hz;
+        for smoothness in [1e-6, 1e-2, 1e2_f64] {
+            let noise = NoiseModel::new(1.0, smoothness / h.powi(5)).unwrap();
+            let [x, v, a] = smoother_transfer(noise, freq_hz, h).unwrap();
+            // Zero phase, by the symmetry of smoothing: x and a real, v imaginary.
+            assert!(
+                x.im.abs() < 1e-9 && (v.re / omega).abs() < 1e-9,
+                "{freq_hz} {x} {v}"
+            );
+            assert!((a.im / (omega * omega)).abs() < 1e-9, "{freq_hz} {a}");
+            table += &format!(
+                "  {:>7.4} {:>7.4} {:>7.4}",
+                x.norm(),
+                v.norm() / omega,
+                a.norm() / omega.powi(2)
+            );
+        }
+    }
+    insta::assert_snapshot!(table);
+}

@@ -138,6 +138,11 @@ pub fn numerical_dissipation(method: Method, step_angle: f64) -> Result<Dissipat
 }
 
 fn eigenvalues(matrix: &Mat<f64>) -> Result<Vec<c64>> {
+    if !matrix.is_all_finite() {
+        return Err(IntegrateError::Eigenvalues {
+            rows: matrix.nrows(),
+        });
+    }
     matrix
         .eigenvalues()
         .map_err(|_| IntegrateError::Eigenvalues {

@@ -134,6 +134,12 @@ impl Implicit {
         u: &mut [f64],
     ) -> Result<()> {
         let mut norm = self.residual_at(balance, at, predictor, u);
+        if !norm.is_finite() {
+            return Err(IntegrateError::ForceNotFinite {
+                time_s: at.time_s,
+                found: norm,
+            });
+        }
         let mut tolerance = self.tolerance(balance, at);
         for _ in 0..NEWTON_LIMIT {
             if norm <= tolerance {
