@@ -15,13 +15,11 @@ static CATALOGUE: &[&dyn Effect] = &[
     &coulomb_friction::CoulombFriction,
     &stribeck_friction::StribeckFriction,
     &quadratic_damping::QuadraticDamping,
-    &asymmetric_damping::AsymmetricDamping,
     &cubic_stiffness::CubicStiffness,
     &quadratic_stiffness::QuadraticStiffness,
     &constant_force::ConstantForce,
     // Measurement chain.
     &sensor_bias::SensorBias,
-    &sensor_gain::SensorGain,
     &sensor_delay::SensorDelay,
     &alternating_timing::AlternatingTiming,
     &alternating_gain::AlternatingGain,

@@ -1,10 +1,18 @@
 //! An input drives the plant with another gain than assumed.
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::kinds::sensor_gain::Gain;
+use crate::signal_map::{Sampled, SignalMap};
 
 /// An input drives the plant with another gain than assumed.
 pub(crate) struct InputGain;
+
+struct Gain(f64);
+
+impl SignalMap for Gain {
+    fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
+        signal.values.iter().map(|value| value * self.0).collect()
+    }
+}
 
 impl Effect for InputGain {
     fn kind(&self) -> &'static str {

@@ -2,7 +2,6 @@
 
 pub(crate) mod alternating_gain;
 pub(crate) mod alternating_timing;
-pub(crate) mod asymmetric_damping;
 pub(crate) mod constant_force;
 pub(crate) mod coulomb_friction;
 pub(crate) mod cubic_stiffness;
@@ -14,7 +13,6 @@ pub(crate) mod quadratic_damping;
 pub(crate) mod quadratic_stiffness;
 pub(crate) mod sensor_bias;
 pub(crate) mod sensor_delay;
-pub(crate) mod sensor_gain;
 pub(crate) mod stiffness_error;
 pub(crate) mod stribeck_friction;
 pub(crate) mod viscous_damping;

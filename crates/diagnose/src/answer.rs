@@ -1,0 +1,304 @@
+//! The answer in words and numbers.
+
+use rayon::prelude::*;
+use simgap_effects::{Family, Placed, find};
+use simgap_estimate::{EstimateError, Problem, Weights};
+use simgap_model::Location;
+
+use crate::diagnosis::{
+    CandidateResult, Gap, LocationShare, NamedEffect, NamedParameter, Rival, Status, Verdict,
+};
+use crate::evidence::probabilities;
+use crate::gap::{closed, predict, total};
+use crate::pipeline::Answer;
+use crate::search::name;
+use crate::structure::describe;
+use crate::verdict::{CLOSES, INDISTINGUISHABLE, Judged};
+
+/// Single effects whose gap on the check records is computed.
+const SHOWN: usize = 12;
+
+pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
+    let effects: Vec<NamedEffect> = answer
+        .judged
+        .iter()
+        .zip(&answer.set.fit.intervals)
+        .map(|(judged, intervals)| NamedEffect {
+            kind: judged.placed.effect.kind().to_string(),
+            at: judged.placed.at.clone(),
+            probability: judged.probability,
+            parameters: judged
+                .placed
+                .effect
+                .parameters()
+                .iter()
+                .zip(intervals)
+                .map(|(parameter, interval)| NamedParameter {
+                    name: parameter.name.to_string(),
+                    value: interval.value,
+                    ci95: interval.ci95,
+                })
+                .collect(),
+            indistinguishable: rivals(answer, judged),
+            evidence: sentences(judged),
+        })
+        .collect();
+    let mut status = if effects.is_empty() {
+        Status::None
+    } else if answer
+        .judged
+        .iter()
+        .all(|judged| judged.placed.effect.family() == Family::NominalParameter)
+    {
+        Status::Parameters
+    } else {
+        Status::Effect
+    };
+    let mut description = Vec::new();
+    if unexplained(train, answer, gap, status) {
+        status = Status::Unknown;
+        description = describe_rest(train, answer);
+    }
+    Verdict {
+        status,
+        effects,
+        description,
+    }
+}
+
+/// Whether structure well above the noise is left that the set does not explain.
+fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
+    let left = (gap.corrected.powi(2) - gap.noise_floor.powi(2))
+        .max(0.0)
+        .sqrt();
+    // What remains must stand out of the noise, and not be a trifle of the motion itself.
+    let stands_out = left > gap.noise_floor && left > 0.01;
+    if !stands_out {
+        return false;
+    }
+    let on_train = {
+        let std = train.output_std();
+        let share = |variance: &[f64]| -> f64 {
+            let each: Vec<f64> = variance
+                .iter()
+                .zip(&std)
+                .map(|(v, s)| v.sqrt() / s)
+                .collect();
+            total(&each)
+        };
+        closed(
+            share(&answer.nominal.variance),
+            share(&answer.set.fit.variance),
+            gap.noise_floor,
+        )
+    };
+    match status {
+        Status::None => true,
+        _ => on_train.max(gap.closed) < CLOSES,
+    }
+}
+
+fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
+    let Some(run) = train.runs.first() else {
+        return vec![];
+    };
+    let Ok(simulator) = train.simulator(&answer.set.fit.estimate.nominal) else {
+        return vec![];
+    };
+    let initial = &answer.set.fit.estimate.initial[0];
+    let mut sentences = Vec::new();
+    for (c, output) in train.model.outputs.iter().enumerate() {
+        let place = match (&output.at, &output.between) {
+            (Some(at), _) => Location::Mass(at.clone()),
+            (None, Some(pair)) => Location::Between(pair.clone()),
+            (None, None) => continue,
+        };
+        if let Ok(path) = simulator.path(run, initial, &place) {
+            let left = &answer.nominal.discrepancy[0][c];
+            let rate = 1.0 / run.time_step_s;
+            sentences.extend(describe(
+                &output.channel,
+                left,
+                &path,
+                &place.to_string(),
+                rate,
+            ));
+        }
+    }
+    if !answer.set.effects().is_empty() {
+        sentences.push(format!(
+            "the nearest of the catalogue, {}, leaves most of it",
+            crate::pipeline::names(answer.set.effects())
+        ));
+    }
+    sentences
+}
+
+fn rivals(answer: &Answer, judged: &Judged) -> Vec<Rival> {
+    let mut rivals: Vec<Rival> = Vec::new();
+    for swap in &judged.swaps {
+        let behind = answer.set.evidence - swap.evidence;
+        if behind >= INDISTINGUISHABLE {
+            continue;
+        }
+        rivals.push(Rival {
+            kind: swap.placed.effect.kind().to_string(),
+            at: swap.placed.at.clone(),
+            because: format!(
+                "in its place it fits the training records as well (log evidence {} by {:.1}, needed to tell them apart is {INDISTINGUISHABLE:.0})",
+                if behind >= 0.0 { "lower" } else { "higher" },
+                behind.abs()
+            ),
+        });
+    }
+    rivals
+}
+
+fn sentences(judged: &Judged) -> Vec<String> {
+    let mut sentences = vec![
+        judged.placed.effect.summary().to_string(),
+        format!("log evidence falls by {:.1} without it", judged.worth),
+        format!(
+            "the squared discrepancy of the training records is {:.1} % lower with it",
+            100.0 * judged.relevance
+        ),
+    ];
+    if let Some(next) = judged.swaps.first() {
+        sentences.push(format!(
+            "the next best in its place is {}",
+            name(&next.placed)
+        ));
+    }
+    sentences
+}
+
+/// Single effects with their gap on the check records and their part in the answer.
+pub(crate) fn candidates(
+    check: &Problem,
+    answer: &Answer,
+    verdict: &Verdict,
+    weights: &Weights,
+) -> Result<Vec<CandidateResult>, EstimateError> {
+    let mut sets: Vec<Vec<Placed>> = answer
+        .singles
+        .iter()
+        .take(SHOWN)
+        .map(|single| {
+            let estimate = &single.fit.estimate;
+            estimate
+                .effects
+                .iter()
+                .chain(&estimate.nominal)
+                .cloned()
+                .collect()
+        })
+        .collect();
+    sets.retain(|set: &Vec<Placed>| !set.is_empty());
+    let gaps = sets
+        .par_iter()
+        .map(|set| Ok(total(&predict(check, set, weights)?.nrmse)))
+        .collect::<Result<Vec<f64>, EstimateError>>()?;
+    let mut results: Vec<CandidateResult> = sets
+        .iter()
+        .zip(gaps)
+        .map(|(set, held_back_gap)| CandidateResult {
+            kind: set[0].effect.kind().to_string(),
+            at: set[0].at.clone(),
+            held_back_gap,
+            probability: probability(answer, verdict, &set[0]),
+        })
+        .collect();
+    results.sort_by(|a, b| {
+        b.probability
+            .total_cmp(&a.probability)
+            .then(a.held_back_gap.total_cmp(&b.held_back_gap))
+    });
+    Ok(results)
+}
+
+/// Probability that an effect belongs to the cause: its own where it is named, what it holds
+/// against a named one where it is a rival.
+fn probability(answer: &Answer, verdict: &Verdict, placed: &Placed) -> f64 {
+    if verdict.effects.is_empty() {
+        return 0.0;
+    }
+    answer
+        .judged
+        .iter()
+        .flat_map(|judged| shares_of(answer, judged))
+        .filter(|(candidate, _)| name(candidate) == name(placed))
+        .map(|(_, probability)| probability)
+        .fold(0.0, f64::max)
+}
+
+/// A named effect and its rivals with their probabilities.
+fn shares_of<'a>(answer: &Answer, judged: &'a Judged) -> Vec<(&'a Placed, f64)> {
+    let mut evidence = vec![answer.set.evidence];
+    evidence.extend(judged.swaps.iter().map(|swap| swap.evidence));
+    let placed =
+        std::iter::once(&judged.placed).chain(judged.swaps.iter().map(|swap| &swap.placed));
+    placed.zip(probabilities(&evidence)).collect()
+}
+
+/// How the cause spreads over the places: each named effect counts by what it explains, each of
+/// its rivals by its probability.
+pub(crate) fn locations(train: &Problem, answer: &Answer, unknown: bool) -> Vec<LocationShare> {
+    let mut shares: Vec<LocationShare> = Vec::new();
+    let mut add = |at: &Location, share: f64| match shares.iter_mut().find(|s| &s.at == at) {
+        Some(known) => known.share += share,
+        None => shares.push(LocationShare {
+            at: at.clone(),
+            share,
+        }),
+    };
+    if answer.judged.is_empty() || unknown {
+        let evidence: Vec<f64> = answer.singles.iter().map(|s| s.evidence).collect();
+        for (single, share) in answer.singles.iter().zip(probabilities(&evidence)) {
+            add(&single.effects()[0].at, share);
+        }
+    } else {
+        for judged in &answer.judged {
+            for (placed, probability) in shares_of(answer, judged) {
+                add(&placed.at, probability * judged.relevance.max(1e-3));
+            }
+        }
+    }
+    let _ = train;
+    let sum: f64 = shares.iter().map(|s| s.share).sum();
+    shares
+        .iter_mut()
+        .for_each(|s| s.share /= sum.max(f64::MIN_POSITIVE));
+    shares.retain(|s| s.share >= 0.01);
+    shares.sort_by(|a, b| b.share.total_cmp(&a.share));
+    shares
+}
+
+/// What to measure next when rivals are left.
+pub(crate) fn next_experiment(verdict: &Verdict) -> Option<String> {
+    let rivals: Vec<String> = verdict
+        .effects
+        .iter()
+        .filter_map(|effect| {
+            let rival = effect.indistinguishable.first()?;
+            let mine = find(&effect.kind)?.experiment();
+            let other = find(&rival.kind)?.experiment();
+            Some(if mine == other {
+                format!(
+                    "to tell {} {} from {} {}: {mine}, with a sensor at each of the two places",
+                    effect.kind, effect.at, rival.kind, rival.at
+                )
+            } else {
+                format!(
+                    "to tell {} from {}: {mine}; or {other}",
+                    effect.kind, rival.kind
+                )
+            })
+        })
+        .collect();
+    if !rivals.is_empty() {
+        return Some(rivals.join(". "));
+    }
+    (verdict.status == Status::Unknown).then(|| {
+        "slow loading forwards and back over the whole travel, then the same motion at three speeds: force against displacement and against velocity show what kind of law is missing".into()
+    })
+}

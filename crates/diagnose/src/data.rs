@@ -1,0 +1,113 @@
+//! Which samples are learnt from, which are held back.
+
+use simgap_model::Model;
+use simgap_record::Record;
+use simgap_simulate::Run;
+
+use crate::DiagnoseError;
+
+/// Share of each record that is held back when no check record is given.
+const HELD_BACK: f64 = 1.0 / 3.0;
+
+/// Samples the search may use; more make it slower, not wiser.
+const SEARCH_SAMPLES: usize = 40_000;
+
+/// Records in the units of the model, divided.
+pub(crate) struct Data {
+    /// Learnt from.
+    pub(crate) train: Vec<Run>,
+    /// Held back; its time stamps beside it.
+    pub(crate) check: Vec<Run>,
+    pub(crate) check_times: Vec<Vec<f64>>,
+    /// What a reader must know about the division.
+    pub(crate) notes: Vec<String>,
+}
+
+pub(crate) fn divide(
+    model: &Model,
+    train: &[Record],
+    check: &[Record],
+) -> Result<Data, DiagnoseError> {
+    if train.is_empty() {
+        return Err(DiagnoseError::NoRecord);
+    }
+    let run = |record: &Record| -> Result<Run, DiagnoseError> {
+        let run = Run::with_outputs(model, record)?;
+        for (output, measured) in model.outputs.iter().zip(&run.measured) {
+            let values = measured.as_deref().unwrap_or_default();
+            if values.iter().all(|value| *value == values[0]) {
+                return Err(DiagnoseError::FlatOutput {
+                    record: record.name().to_string(),
+                    channel: output.channel.clone(),
+                });
+            }
+        }
+        Ok(run)
+    };
+    let mut data = Data {
+        train: vec![],
+        check: vec![],
+        check_times: vec![],
+        notes: vec![],
+    };
+    for record in train {
+        if check.is_empty() {
+            let cut = record.len() - (record.len() as f64 * HELD_BACK) as usize;
+            data.train.push(run(&record.slice(0..cut)?)?);
+            let held = record.slice(cut..record.len())?;
+            data.check.push(run(&held)?);
+            data.notes.push(format!(
+                "no check record was given: the last third of {} ({:.6} s to {:.6} s) was held back",
+                record.name(),
+                held.time_s().first().copied().unwrap_or(0.0),
+                held.time_s().last().copied().unwrap_or(0.0),
+            ));
+            data.check_times.push(held.time_s().to_vec());
+        } else {
+            data.train.push(run(record)?);
+        }
+    }
+    for record in check {
+        data.check.push(run(record)?);
+        data.check_times.push(record.time_s().to_vec());
+    }
+    Ok(data)
+}
+
+/// The stretches of the training runs that the search uses: all of them when they are short, else
+/// the most energetic stretch of each, in equal parts.
+pub(crate) fn excerpts(train: &[Run]) -> Vec<Run> {
+    let total: usize = train.iter().map(|run| run.len).sum();
+    if total <= SEARCH_SAMPLES {
+        return train.to_vec();
+    }
+    let share = SEARCH_SAMPLES as f64 / total as f64;
+    train
+        .iter()
+        .map(|run| {
+            let len = ((run.len as f64 * share) as usize).clamp(1, run.len);
+            let start = most_energetic(run, len);
+            run.slice(start..start + len)
+        })
+        .collect()
+}
+
+fn most_energetic(run: &Run, len: usize) -> usize {
+    let mut energy = vec![0.0; run.len];
+    for values in run.measured.iter().flatten() {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let scale: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+        for (sum, value) in energy.iter_mut().zip(values) {
+            *sum += (value - mean) * (value - mean) / scale;
+        }
+    }
+    let mut window: f64 = energy[..len].iter().sum();
+    let (mut best, mut at) = (window, 0);
+    for start in 1..=(run.len - len) {
+        window += energy[start + len - 1] - energy[start - 1];
+        if window > best {
+            (best, at) = (window, start);
+        }
+    }
+    at
+}

@@ -1,0 +1,66 @@
+//! How much the data speak for a set of effects.
+//!
+//! ```text
+//! E = −J − ½ k ln N_eff                                           (1)
+//! N_eff = Σ_c ρ_c N,   ρ_c = N_eff,c / N of the residual          (2)
+//! p_i = exp(E_i / T) / Σ_j exp(E_j / T)                           (3)
+//! ```
+//!
+//! J is the objective of the fit, k the number of parameters of the effects. (1) is the Bayesian
+//! information criterion with the number of samples that are independent, \[Schwarz1978\]; the
+//! temperature T in (3) allows for what (2) does not see.
+
+use simgap_estimate::{Fit, Problem, Weights};
+use simgap_signal::correlation::effective_sample_count;
+
+/// T of (3), calibrated on generated cases.
+const TEMPERATURE: f64 = 2.0;
+
+/// Share of independent samples in the discrepancy of each channel, (2).
+pub(crate) fn independence(fit: &Fit, channels: usize) -> Vec<f64> {
+    (0..channels)
+        .map(|c| {
+            let (mut effective, mut total) = (0.0, 0.0);
+            for run in &fit.discrepancy {
+                let count = run[c].len() as f64;
+                effective += effective_sample_count(&run[c]).unwrap_or(count).min(count);
+                total += count;
+            }
+            (effective / f64::max(total, 1.0)).clamp(1e-4, 1.0)
+        })
+        .collect()
+}
+
+/// N_eff of (1).
+pub(crate) fn effective_samples(problem: &Problem, weights: &Weights) -> f64 {
+    let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
+    (count * weights.independence.iter().sum::<f64>()).max(2.0)
+}
+
+/// E of (1).
+pub(crate) fn evidence(fit: &Fit, effective_samples: f64) -> f64 {
+    let parameters: usize = fit.estimate.effects.iter().map(|p| p.values.len()).sum();
+    -fit.objective - 0.5 * parameters as f64 * effective_samples.ln()
+}
+
+/// p of (3).
+pub(crate) fn probabilities(evidence: &[f64]) -> Vec<f64> {
+    let best = evidence.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let raw: Vec<f64> = evidence
+        .iter()
+        .map(|e| ((e - best) / TEMPERATURE).exp())
+        .collect();
+    let sum: f64 = raw.iter().sum();
+    raw.iter().map(|p| p / sum).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_probabilities() {
+        let p = probabilities(&[-1000.0, -1000.0 + TEMPERATURE * 3.0_f64.ln()]);
+        assert!((p[0] - 0.25).abs() < 1e-12 && (p[1] - 0.75).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,123 @@
+//! How large the gap is on the check records.
+
+use simgap_effects::Placed;
+use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states};
+use simgap_signal::noise::white_noise_std;
+
+use crate::diagnosis::{ChannelGap, Gap};
+
+/// Predictions of the check runs by one model, and their nrmse.
+pub(crate) struct Prediction {
+    /// For each run and channel, measured minus predicted.
+    pub(crate) discrepancy: Vec<Vec<Vec<f64>>>,
+    /// Initial state of each run.
+    pub(crate) initial: Vec<Vec<f64>>,
+    /// For each channel, rms(discrepancy) / std(measured) over all runs.
+    pub(crate) nrmse: Vec<f64>,
+}
+
+/// Predicts the check runs; only their initial states are estimated.
+pub(crate) fn predict(
+    check: &Problem,
+    effects: &[Placed],
+    weights: &Weights,
+) -> Result<Prediction, EstimateError> {
+    let fit = fit_initial_states(check, effects, weights)?;
+    let std = check.output_std();
+    let nrmse = fit
+        .variance
+        .iter()
+        .zip(&std)
+        .map(|(v, s)| v.sqrt() / s)
+        .collect();
+    Ok(Prediction {
+        discrepancy: fit.discrepancy,
+        initial: fit.estimate.initial,
+        nrmse,
+    })
+}
+
+/// Root mean square over the channels.
+pub(crate) fn total(nrmse: &[f64]) -> f64 {
+    (nrmse.iter().map(|e| e * e).sum::<f64>() / nrmse.len().max(1) as f64).sqrt()
+}
+
+/// White measurement noise of each channel over std(measured), from what is left after correction;
+/// never more than all of what is left.
+pub(crate) fn noise_floor(check: &Problem, corrected: &Prediction) -> Vec<f64> {
+    let std = check.output_std();
+    (0..std.len())
+        .map(|c| {
+            let (mut square, mut count) = (0.0, 0.0);
+            for run in &corrected.discrepancy {
+                let sigma = white_noise_std(&run[c]).map_or(0.0, |noise| noise.std);
+                square += sigma * sigma * run[c].len() as f64;
+                count += run[c].len() as f64;
+            }
+            ((square / f64::max(count, 1.0)).sqrt() / std[c]).min(corrected.nrmse[c])
+        })
+        .collect()
+}
+
+/// 1 − sqrt(max(corrected² − floor², 0) / max(nominal² − floor², tiny)).
+pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
+    let left = (corrected * corrected - floor * floor).max(0.0);
+    let there = (nominal * nominal - floor * floor).max(f64::MIN_POSITIVE);
+    if left == 0.0 {
+        1.0
+    } else {
+        1.0 - (left / there).sqrt()
+    }
+}
+
+pub(crate) fn gap(
+    check: &Problem,
+    nominal: &Prediction,
+    recalibrated: &Prediction,
+    corrected: &Prediction,
+) -> Gap {
+    let floor = noise_floor(check, corrected);
+    let totals = [nominal, recalibrated, corrected].map(|p| total(&p.nrmse));
+    let noise = total(&floor);
+    Gap {
+        metric: "nrmse",
+        nominal: totals[0],
+        recalibrated: totals[1],
+        corrected: totals[2],
+        noise_floor: noise,
+        closed: closed(totals[0], totals[2], noise),
+        channels: check
+            .model
+            .outputs
+            .iter()
+            .enumerate()
+            .map(|(c, output)| ChannelGap {
+                channel: output.channel.clone(),
+                nominal: nominal.nrmse[c],
+                recalibrated: recalibrated.nrmse[c],
+                corrected: corrected.nrmse[c],
+                noise_floor: floor[c],
+            })
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_closed_figures_of_the_contract() {
+        let value = closed(0.412, 0.021, 0.018);
+        assert!(
+            (value
+                - (1.0
+                    - (0.021_f64.powi(2) - 0.018_f64.powi(2)).sqrt()
+                        / (0.412_f64.powi(2) - 0.018_f64.powi(2)).sqrt()))
+            .abs()
+                < 1e-12
+        );
+        assert_eq!(closed(0.5, 0.1, 0.1), 1.0);
+        assert_eq!(closed(0.5, 0.5, 0.0), 0.0);
+    }
+}

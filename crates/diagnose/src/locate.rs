@@ -1,0 +1,320 @@
+//! Where the discrepancy of the nominal model lies: channels, records, frequencies, times and
+//! states of motion.
+
+use simgap_estimate::{EstimateError, Problem};
+use simgap_model::{InputKind, Location, undamped_modes};
+use simgap_signal::spectrum::Psd;
+use simgap_signal::welch::welch;
+use simgap_simulate::MemberPath;
+
+use crate::diagnosis::{BandShare, ChannelShare, RecordShare, StateShare, TimeShare};
+use crate::gap::Prediction;
+use crate::structure::welch_options;
+
+/// Stretches a record is divided into.
+const STRETCHES: usize = 20;
+/// Entries of a list below this share are left out.
+const SMALLEST_SHARE: f64 = 0.02;
+/// Entries of a list at the most.
+const MOST_ENTRIES: usize = 6;
+
+/// Squared discrepancy over the variance of the measured channel, summed over the channels, for
+/// each sample of each run.
+fn energy(check: &Problem, prediction: &Prediction) -> Vec<Vec<f64>> {
+    let std = check.output_std();
+    prediction
+        .discrepancy
+        .iter()
+        .map(|run| {
+            let len = run.first().map_or(0, Vec::len);
+            let square = |i: usize| {
+                run.iter()
+                    .zip(&std)
+                    .map(|(signal, s)| (signal[i] / s).powi(2))
+                    .sum::<f64>()
+            };
+            (0..len).map(square).collect()
+        })
+        .collect()
+}
+
+fn shares(values: &[f64]) -> Vec<f64> {
+    let total: f64 = values.iter().sum();
+    values
+        .iter()
+        .map(|v| if total > 0.0 { v / total } else { 0.0 })
+        .collect()
+}
+
+pub(crate) fn channels(check: &Problem, prediction: &Prediction) -> Vec<ChannelShare> {
+    let squares: Vec<f64> = prediction.nrmse.iter().map(|e| e * e).collect();
+    let named = check.model.outputs.iter().zip(shares(&squares));
+    named
+        .map(|(output, share)| ChannelShare {
+            channel: output.channel.clone(),
+            share,
+        })
+        .collect()
+}
+
+pub(crate) fn records(check: &Problem, prediction: &Prediction) -> Vec<RecordShare> {
+    let sums: Vec<f64> = energy(check, prediction)
+        .iter()
+        .map(|run| run.iter().sum())
+        .collect();
+    let named = check.runs.iter().zip(shares(&sums));
+    named
+        .map(|(run, share)| RecordShare {
+            record: run.name.clone(),
+            share,
+        })
+        .collect()
+}
+
+pub(crate) fn times(check: &Problem, prediction: &Prediction) -> Vec<TimeShare> {
+    let energy = energy(check, prediction);
+    let total: f64 = energy.iter().flatten().sum();
+    let mut list = Vec::new();
+    for (run, energy) in check.runs.iter().zip(&energy) {
+        let len = energy.len().div_ceil(STRETCHES).max(1);
+        for (k, stretch) in energy.chunks(len).enumerate() {
+            let from = k * len;
+            list.push(TimeShare {
+                record: run.name.clone(),
+                from_s: run.start_s + from as f64 * run.time_step_s,
+                to_s: run.start_s + (from + stretch.len()) as f64 * run.time_step_s,
+                share: if total > 0.0 {
+                    stretch.iter().sum::<f64>() / total
+                } else {
+                    0.0
+                },
+            });
+        }
+    }
+    trim(&mut list, |entry| entry.share);
+    list
+}
+
+fn trim<T>(list: &mut Vec<T>, share: impl Fn(&T) -> f64) {
+    list.sort_by(|a, b| share(b).total_cmp(&share(a)));
+    let mut kept = 0;
+    list.retain(|entry| {
+        kept += 1;
+        kept <= MOST_ENTRIES && share(entry) >= SMALLEST_SHARE
+    });
+}
+
+pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> {
+    let std = check.output_std();
+    let Some(run) = (0..check.runs.len()).max_by_key(|&r| check.runs[r].len) else {
+        return vec![];
+    };
+    let fs = 1.0 / check.runs[run].time_step_s;
+    let options = welch_options(check.runs[run].len);
+    let spectrum = |values: &[f64]| welch(values, fs, &options).ok();
+    let mut density: Vec<f64> = Vec::new();
+    let mut freq_hz = Vec::new();
+    for (signal, s) in prediction.discrepancy[run].iter().zip(&std) {
+        let Some(psd) = spectrum(signal) else {
+            continue;
+        };
+        density.resize(psd.density.len(), 0.0);
+        density
+            .iter_mut()
+            .zip(&psd.density)
+            .for_each(|(sum, d)| *sum += d / (s * s));
+        freq_hz = psd.freq_hz;
+    }
+    let marks = marks(check, run, &spectrum);
+    let total: f64 = density.iter().sum();
+    if total <= 0.0 {
+        return vec![];
+    }
+    let half_bin = freq_hz.get(1).map_or(0.0, |f| 0.5 * f);
+    let mut list = Vec::new();
+    let mut left = density.clone();
+    for _ in 0..2 * MOST_ENTRIES {
+        let Some((peak, &height)) = left.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))
+        else {
+            break;
+        };
+        if height <= 0.0 {
+            break;
+        }
+        // A band reaches down to a tenth of its peak on both sides.
+        let low = (0..peak)
+            .rev()
+            .take_while(|&i| left[i] > 0.1 * height)
+            .last()
+            .unwrap_or(peak);
+        let high = (peak + 1..left.len())
+            .take_while(|&i| left[i] > 0.1 * height)
+            .last()
+            .unwrap_or(peak);
+        let share = left[low..=high].iter().sum::<f64>() / total;
+        left[low..=high].fill(0.0);
+        let (from_hz, to_hz) = ((freq_hz[low] - half_bin).max(0.0), freq_hz[high] + half_bin);
+        list.push(BandShare {
+            from_hz,
+            to_hz,
+            label: label(&marks, freq_hz[peak], half_bin),
+            share,
+        });
+    }
+    trim(&mut list, |band| band.share);
+    list
+}
+
+/// Frequencies worth a name.
+struct Marks {
+    excitation_hz: Option<f64>,
+    natural_hz: Vec<f64>,
+    sample_rate_hz: f64,
+}
+
+fn marks(check: &Problem, run: usize, spectrum: &dyn Fn(&[f64]) -> Option<Psd>) -> Marks {
+    let signals = &check.runs[run];
+    // A single line that carries most of an input is the excitation; free decays have none.
+    let excitation_hz = signals
+        .inputs
+        .iter()
+        .zip(&check.model.inputs)
+        .find_map(|(u, input)| {
+            let _: InputKind = input.kind;
+            let psd = spectrum(u)?;
+            let total: f64 = psd.density.iter().sum();
+            let (peak, _) = psd
+                .density
+                .iter()
+                .enumerate()
+                .max_by(|a, b| a.1.total_cmp(b.1))?;
+            let around = peak.saturating_sub(2)..(peak + 3).min(psd.density.len());
+            let weights = &psd.density[around.clone()];
+            let power: f64 = weights.iter().sum();
+            let mean: f64 = psd.freq_hz[around]
+                .iter()
+                .zip(weights)
+                .map(|(f, w)| f * w)
+                .sum();
+            (power > 0.7 * total && peak > 0).then(|| mean / power)
+        });
+    let natural_hz = check
+        .model
+        .matrices()
+        .and_then(|matrices| undamped_modes(&matrices))
+        .map(|modes| modes.natural_freq_hz)
+        .unwrap_or_default();
+    Marks {
+        excitation_hz,
+        natural_hz,
+        sample_rate_hz: 1.0 / signals.time_step_s,
+    }
+}
+
+fn label(marks: &Marks, freq_hz: f64, half_bin: f64) -> String {
+    let near = |a: f64, b: f64| (a - b).abs() <= (2.0 * half_bin).max(0.01 * b);
+    if freq_hz <= half_bin {
+        return "constant or slow drift".into();
+    }
+    let nyquist = 0.5 * marks.sample_rate_hz;
+    if let Some(f) = marks.excitation_hz {
+        if near(freq_hz, f) {
+            return format!("the excitation at {f:.4} Hz");
+        }
+        let order = (freq_hz / f).round();
+        if (2.0..30.0).contains(&order) && near(freq_hz, order * f) {
+            return format!("harmonic {order} of the excitation at {f:.4} Hz");
+        }
+        let image = ((nyquist - freq_hz) / f).round();
+        if (1.0..6.0).contains(&image) && near(freq_hz, nyquist - image * f) {
+            return format!("half the sample rate ({nyquist:.4} Hz) minus {image} times {f:.4} Hz");
+        }
+    }
+    if let Some(natural) = marks
+        .natural_hz
+        .iter()
+        .find(|&&n| n > 0.0 && (freq_hz / n - 1.0).abs() < 0.1)
+    {
+        return format!("near the natural frequency {natural:.4} Hz");
+    }
+    if near(freq_hz, nyquist) {
+        return format!("half the sample rate ({nyquist:.4} Hz)");
+    }
+    format!("around {freq_hz:.4} Hz")
+}
+
+/// Regions of motion where the discrepancy gathers, over the nominal motion across each place.
+pub(crate) fn states(
+    check: &Problem,
+    prediction: &Prediction,
+    places: &[Location],
+) -> Result<Vec<StateShare>, EstimateError> {
+    let energy = energy(check, prediction);
+    let simulator = check.simulator(&[])?;
+    let mut list = Vec::new();
+    for place in places {
+        let mut path = MemberPath::default();
+        for (run, initial) in check.runs.iter().zip(&prediction.initial) {
+            let one = simulator.path(run, initial, place)?;
+            path.displacement.extend(one.displacement);
+            path.velocity.extend(one.velocity);
+        }
+        let name = match place {
+            Location::Between([a, b]) if b == simgap_model::GROUND => a.clone(),
+            Location::Between([a, b]) => format!("{a} to {b}"),
+            Location::Mass(name) | Location::Input(name) | Location::Channel(name) => name.clone(),
+        };
+        let flat: Vec<f64> = energy.iter().flatten().copied().collect();
+        list.extend(regions(&flat, "velocity", &path.velocity, &name));
+        list.extend(regions(&flat, "displacement", &path.displacement, &name));
+    }
+    // What gathers where the motion seldom is comes first.
+    list.sort_by(|a, b| (b.share - b.occupancy).total_cmp(&(a.share - a.occupancy)));
+    list.truncate(MOST_ENTRIES);
+    Ok(list)
+}
+
+fn regions(energy: &[f64], variable: &'static str, values: &[f64], at: &str) -> Vec<StateShare> {
+    let peak = values.iter().fold(0.0_f64, |p, v| p.max(v.abs()));
+    let total: f64 = energy.iter().sum();
+    if peak <= 0.0 || total <= 0.0 {
+        return vec![];
+    }
+    let low = if variable == "velocity" {
+        "velocity reversal"
+    } else {
+        "middle of the travel"
+    };
+    let regions = [
+        (low, -0.1 * peak, 0.1 * peak),
+        ("large positive", 0.5 * peak, peak),
+        ("large negative", -peak, -0.5 * peak),
+    ];
+    regions
+        .into_iter()
+        .map(|(label, from, to)| {
+            let inside = |v: f64| (from..=to).contains(&v);
+            let hit: f64 = energy
+                .iter()
+                .zip(values)
+                .filter(|(_, v)| inside(**v))
+                .map(|(e, _)| e)
+                .sum();
+            let count = values.iter().filter(|v| inside(**v)).count();
+            let label = if label == low {
+                format!("{label} of {at}")
+            } else {
+                format!("{label} {variable} of {at}")
+            };
+            StateShare {
+                label,
+                variable,
+                at: at.to_string(),
+                from,
+                to,
+                share: hit / total,
+                occupancy: count as f64 / values.len().max(1) as f64,
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,352 @@
+//! The path from records to an answer.
+
+use rayon::prelude::*;
+use simgap_effects::{Action, Family, Placed, catalogue};
+use simgap_estimate::{Fit, Problem, Start, Weights, fit, fit_initial_states};
+use simgap_model::{Location, Model, OutputKind};
+use simgap_record::Record;
+
+use crate::data::{Data, divide, excerpts};
+use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
+use crate::evidence::independence;
+use crate::gap::{Prediction, gap, predict};
+use crate::search::{Hypothesis, Search, name};
+use crate::verdict::{EARNS, Judged, RELEVANT, judge, nominal_set, prune, rise};
+use crate::{DiagnoseError, answer, locate};
+
+/// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
+const RECALIBRATION_PRIOR: f64 = 0.5;
+/// Sets that go on from the search to the whole of the training records.
+const FINALISTS: usize = 6;
+/// Rivals fitted for each named effect.
+const RIVALS: usize = 8;
+
+/// What is asked.
+pub struct Request<'a> {
+    /// The nominal model.
+    pub model: &'a Model,
+    /// Records to learn from.
+    pub train: &'a [Record],
+    /// Records to judge by; empty to hold back the last part of each training record.
+    pub check: &'a [Record],
+    /// Kinds to take out of the catalogue.
+    pub withheld: &'a [String],
+}
+
+/// Told what is being done; called in order from the calling thread's pool.
+pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
+
+/// What comes out.
+pub struct Outcome {
+    /// The answer.
+    pub diagnosis: Diagnosis,
+    /// The model with recalibrated parameters and the named effects.
+    pub corrected: Model,
+    /// Predictions of the check records.
+    pub series: Vec<CheckSeries>,
+}
+
+/// The best set found and what it is compared with, on the whole of the training records.
+pub(crate) struct Answer {
+    pub(crate) set: Hypothesis,
+    pub(crate) judged: Vec<Judged>,
+    /// Single effects, best first.
+    pub(crate) singles: Vec<Hypothesis>,
+    /// Without any effect, nominal parameters under their prior.
+    pub(crate) base: Hypothesis,
+    /// Without any effect, nominal parameters as given.
+    pub(crate) nominal: Fit,
+}
+
+/// Diagnoses the gap between a model and records.
+///
+/// The result depends on the model, the records and the withheld kinds alone, not on the number
+/// of threads of the pool it runs in.
+///
+/// # Errors
+/// [`DiagnoseError`] when the records do not fit the model or the model cannot be simulated.
+pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome, DiagnoseError> {
+    for kind in request.withheld {
+        if catalogue().iter().all(|effect| effect.kind() != kind) {
+            return Err(DiagnoseError::UnknownKind {
+                found: kind.clone(),
+                known: catalogue()
+                    .iter()
+                    .map(|e| e.kind())
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            });
+        }
+    }
+    let data = divide(request.model, request.train, request.check)?;
+    let train = Problem::new(request.model, data.train.clone())?;
+    let check = train.with_runs(data.check.clone());
+    let plain = Weights::independent(request.model.outputs.len());
+
+    progress("nominal model");
+    let nominal = fit_initial_states(&train, &[], &plain)?;
+    let recalibrated = recalibrate(&train, &nominal, &plain)?;
+    let answer = search(request, &train, nominal, &recalibrated, progress)?;
+
+    progress("check records");
+    let nominal_placed: Vec<Placed> = vec![];
+    let mut placed: Vec<Placed> = answer.set.effects().to_vec();
+    placed.extend(answer.set.fit.estimate.nominal.iter().cloned());
+    let predictions = [&nominal_placed, &recalibrated.estimate.nominal, &placed]
+        .into_par_iter()
+        .map(|effects| predict(&check, effects, &plain))
+        .collect::<Result<Vec<_>, _>>()?;
+    let gap = gap(&check, &predictions[0], &predictions[1], &predictions[2]);
+    let mut verdict = answer::verdict(&train, &answer, &gap);
+    let left_unknown = verdict.status == crate::Status::Unknown;
+    let (gap, placed, shown) = if left_unknown {
+        // Blame nothing: the corrected model is the recalibrated one.
+        let gap = crate::gap::gap(&check, &predictions[0], &predictions[1], &predictions[1]);
+        verdict.effects.clear();
+        (gap, recalibrated.estimate.nominal.clone(), 1)
+    } else {
+        (gap, placed, 2)
+    };
+    let candidates = answer::candidates(&check, &answer, &verdict, &plain)?;
+    let places = locate_places(request.model);
+    let r#where = Where {
+        channels: locate::channels(&check, &predictions[0]),
+        locations: answer::locations(&train, &answer, left_unknown),
+        bands: locate::bands(&check, &predictions[0]),
+        times: locate::times(&check, &predictions[0]),
+        states: locate::states(&check, &predictions[0], &places)?,
+        records: locate::records(&check, &predictions[0]),
+    };
+    Ok(Outcome {
+        diagnosis: Diagnosis {
+            schema: "simgap-diagnosis/1",
+            model: request.model.name.clone(),
+            gap,
+            r#where,
+            next_experiment: answer::next_experiment(&verdict),
+            verdict,
+            candidates,
+            notes: notes(request, &data),
+        },
+        corrected: corrected_model(request, &placed),
+        series: series(&check, &data, &predictions[0], &predictions[shown]),
+    })
+}
+
+/// Re-estimates the nominal parameters, no effect added.
+fn recalibrate(train: &Problem, nominal: &Fit, weights: &Weights) -> Result<Fit, DiagnoseError> {
+    let start = Start {
+        effects: vec![],
+        nominal: nominal_parameters(train),
+        initial: nominal.estimate.initial.clone(),
+    };
+    let loose = Weights {
+        nominal_prior: RECALIBRATION_PRIOR,
+        ..weights.clone()
+    };
+    Ok(fit(train, &start, &loose)?)
+}
+
+/// Every nominal parameter at its nominal value.
+fn nominal_parameters(problem: &Problem) -> Vec<Placed> {
+    problem
+        .nominal_parameters()
+        .into_iter()
+        .map(|candidate| Placed {
+            effect: candidate.effect,
+            at: candidate.at,
+            values: vec![1.0; candidate.effect.parameters().len()],
+        })
+        .collect()
+}
+
+fn search(
+    request: &Request<'_>,
+    train: &Problem,
+    nominal: Fit,
+    recalibrated: &Fit,
+    progress: Progress<'_>,
+) -> Result<Answer, DiagnoseError> {
+    let channels = request.model.outputs.len();
+    let colour = |fit: &Fit| Weights {
+        independence: independence(fit, channels),
+        ..Weights::independent(channels)
+    };
+    let short = train.with_runs(excerpts(&train.runs));
+    let start = |problem: &Problem| -> Result<Start, DiagnoseError> {
+        let initial = fit_initial_states(problem, &[], &Weights::independent(channels))?;
+        Ok(Start {
+            effects: vec![],
+            nominal: nominal_parameters(problem),
+            initial: initial.estimate.initial,
+        })
+    };
+    // The search, with the colour of the discrepancy as known before it.
+    let first = start(&short)?;
+    let weights = colour(recalibrated);
+    let baseline = fit(&short, &first, &weights)?;
+    let mut searching = Search::new(&short, weights, &baseline, request.withheld)?;
+    let base = searching.fit(&first)?;
+    let pool = searching.run(&base, progress)?;
+
+    // The finalists, with the colour of the best one's residual, on all samples.
+    progress("finalists");
+    let best = pool.first().unwrap_or(&base);
+    let weights = colour(&best.fit);
+    searching.reweigh(weights.clone());
+    let mut full = Search::new(
+        train,
+        weights,
+        &baseline_for(train, &first)?,
+        request.withheld,
+    )?;
+    let again = |set: &Hypothesis| -> Result<Hypothesis, DiagnoseError> {
+        let mut start = set.fit.estimate.clone();
+        start.initial = nominal.estimate.initial.clone();
+        Ok(full.fit(&start)?)
+    };
+    let mut finalists = pool
+        .iter()
+        .take(FINALISTS)
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(again)
+        .collect::<Result<Vec<_>, _>>()?;
+    crate::search::sort(&mut finalists);
+    let base = again(&base)?;
+    full.reweigh(colour(&finalists.first().unwrap_or(&base).fit));
+    let refit = |set: &Hypothesis| full.fit(&set.fit.estimate);
+    let mut finalists = finalists
+        .par_iter()
+        .map(refit)
+        .collect::<Result<Vec<_>, _>>()?;
+    crate::search::sort(&mut finalists);
+    let base = refit(&base)?;
+
+    progress("verdict");
+    let mut set = prune(
+        &full,
+        finalists.into_iter().next().unwrap_or_else(|| base.clone()),
+    )?;
+    if set.effects().is_empty() {
+        set = nominal_set(&full, &nominal.estimate.initial)?;
+    }
+    let judged = judge(&full, &set, RIVALS)?;
+    let singles: Vec<Hypothesis> = pool
+        .into_iter()
+        .filter(|set| set.effects().len() == 1)
+        .collect();
+    Ok(Answer {
+        set,
+        judged,
+        singles,
+        base,
+        nominal,
+    })
+}
+
+/// Initial states and nominal parameters of the whole records, for the scales of the candidates.
+fn baseline_for(train: &Problem, short: &Start) -> Result<Fit, DiagnoseError> {
+    let weights = Weights::independent(train.model.outputs.len());
+    let start = Start {
+        initial: train.initial_guess(),
+        ..short.clone()
+    };
+    Ok(fit(train, &start, &weights)?)
+}
+
+fn locate_places(model: &Model) -> Vec<Location> {
+    simgap_effects::sites(model, simgap_effects::SiteKind::Member)
+}
+
+fn notes(request: &Request<'_>, data: &Data) -> Vec<String> {
+    let mut notes = data.notes.clone();
+    for record in request.train.iter().chain(request.check) {
+        for finding in simgap_record::quality(record) {
+            notes.push(format!("{}: {finding}", record.name()));
+        }
+    }
+    notes
+}
+
+/// The nominal model with its parameters changed and the effects listed.
+fn corrected_model(request: &Request<'_>, placed: &[Placed]) -> Model {
+    let mut model = request.model.clone();
+    for effect in placed {
+        if effect.effect.family() != Family::NominalParameter {
+            model.effects.push(effect.to_entry());
+            continue;
+        }
+        match (effect.action(), &effect.at) {
+            (Action::Model(change), at) => change(&mut model, at),
+            (_, Location::Input(channel)) => {
+                // Without a gain the channel is converted by its unit; a gain replaces that.
+                let unit = request
+                    .train
+                    .first()
+                    .and_then(|record| record.channel(channel))
+                    .map_or(1.0, |c| c.unit.si_factor());
+                for input in model.inputs.iter_mut().filter(|i| &i.channel == channel) {
+                    input.gain = Some(input.gain.unwrap_or(unit) * effect.values[0]);
+                }
+            }
+            _ => {}
+        }
+    }
+    model
+}
+
+fn series(
+    check: &Problem,
+    data: &Data,
+    nominal: &Prediction,
+    corrected: &Prediction,
+) -> Vec<CheckSeries> {
+    let outputs = &check.model.outputs;
+    check
+        .runs
+        .iter()
+        .enumerate()
+        .map(|(r, run)| CheckSeries {
+            record: run.name.clone(),
+            time_s: data.check_times[r].clone(),
+            channels: outputs
+                .iter()
+                .enumerate()
+                .map(|(c, output)| {
+                    let measured = run.measured[c].clone().unwrap_or_default();
+                    let predicted = |p: &Prediction| -> Vec<f64> {
+                        measured
+                            .iter()
+                            .zip(&p.discrepancy[r][c])
+                            .map(|(m, d)| m - d)
+                            .collect()
+                    };
+                    ChannelSeries {
+                        channel: output.channel.clone(),
+                        unit: match output.kind {
+                            OutputKind::Displacement => "m",
+                            OutputKind::Velocity => "m/s",
+                            OutputKind::Acceleration => "m/s^2",
+                            OutputKind::Force => "N",
+                        },
+                        nominal: predicted(nominal),
+                        corrected: predicted(corrected),
+                        measured,
+                    }
+                })
+                .collect(),
+        })
+        .collect()
+}
+
+/// Whether recalibration alone, without a named parameter, says more than the model as given.
+pub(crate) fn drifted(answer: &Answer) -> bool {
+    answer.base.evidence + answer.nominal.objective > EARNS
+        && rise(&answer.nominal, &answer.base.fit) > RELEVANT
+}
+
+/// Names of a set, for messages.
+pub(crate) fn names(effects: &[Placed]) -> String {
+    effects.iter().map(name).collect::<Vec<_>>().join(", ")
+}

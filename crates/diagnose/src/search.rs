@@ -1,0 +1,253 @@
+//! The search over small sets of effects.
+//!
+//! One effect at a time misleads: on a positioning axis friction alone fits with a negative force
+//! until a constant force is in the model too. So several sets of each size survive, every set is
+//! fitted on the full nonlinear simulation, and the next size starts from each survivor.
+
+use rayon::prelude::*;
+use simgap_effects::{Family, Placed, SiteScale};
+use simgap_estimate::{
+    Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
+};
+
+use crate::evidence::{effective_samples, evidence};
+
+/// Sets of each size that the next size starts from.
+const SURVIVORS: [usize; 2] = [6, 3];
+/// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
+const FITTED: [usize; 3] = [18, 6, 4];
+/// Scores below this cannot reach the threshold of evidence after fitting.
+const HOPELESS: f64 = 1.0;
+
+/// A fitted set of effects.
+#[derive(Clone)]
+pub(crate) struct Hypothesis {
+    pub(crate) fit: Fit,
+    pub(crate) evidence: f64,
+}
+
+impl Hypothesis {
+    pub(crate) fn effects(&self) -> &[Placed] {
+        &self.fit.estimate.effects
+    }
+
+    /// The set, whatever the order in which its effects were found.
+    pub(crate) fn key(&self) -> Vec<String> {
+        let mut key: Vec<String> = self.effects().iter().map(name).collect();
+        key.sort();
+        key
+    }
+
+    pub(crate) fn has(&self, candidate: &Candidate) -> bool {
+        self.effects().iter().any(|p| same(p, candidate))
+    }
+}
+
+pub(crate) fn name(placed: &Placed) -> String {
+    format!("{} {}", placed.effect.kind(), placed.at)
+}
+
+pub(crate) fn same(placed: &Placed, candidate: &Candidate) -> bool {
+    placed.effect.kind() == candidate.effect.kind() && placed.at == candidate.at
+}
+
+/// The search: its problem, weights and candidates.
+pub(crate) struct Search<'a> {
+    pub(crate) problem: &'a Problem,
+    pub(crate) weights: Weights,
+    pub(crate) candidates: Vec<(Candidate, SiteScale)>,
+    effective_samples: f64,
+}
+
+impl<'a> Search<'a> {
+    /// Prepares the candidates of the catalogue, less the withheld kinds, with their typical sizes.
+    pub(crate) fn new(
+        problem: &'a Problem,
+        weights: Weights,
+        baseline: &Fit,
+        withheld: &[String],
+    ) -> Result<Search<'a>, EstimateError> {
+        let simulator = problem.simulator(&baseline.estimate.nominal)?;
+        let candidates = problem
+            .candidates(|_| true)
+            .into_iter()
+            .filter(|candidate| !withheld.iter().any(|kind| kind == candidate.effect.kind()))
+            .map(|candidate| {
+                let scale =
+                    problem.site_scale(&simulator, &baseline.estimate.initial, &candidate.at)?;
+                Ok((candidate, scale))
+            })
+            .collect::<Result<Vec<_>, EstimateError>>()?;
+        let effective_samples = effective_samples(problem, &weights);
+        Ok(Search {
+            problem,
+            weights,
+            candidates,
+            effective_samples,
+        })
+    }
+
+    /// Replaces the weights, after the colour of the residual is better known.
+    pub(crate) fn reweigh(&mut self, weights: Weights) {
+        self.effective_samples = effective_samples(self.problem, &weights);
+        self.weights = weights;
+    }
+
+    /// Fits a set from a start.
+    pub(crate) fn fit(&self, start: &Start) -> Result<Hypothesis, EstimateError> {
+        let fit = fit(self.problem, start, &self.weights)?;
+        let evidence = evidence(&fit, self.effective_samples);
+        Ok(Hypothesis { fit, evidence })
+    }
+
+    /// Every set worth a fit with one more effect than `base`, best first.
+    pub(crate) fn extend(
+        &self,
+        base: &Hypothesis,
+        most: usize,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        let scores = self.scores(base)?;
+        let starts: Vec<Start> = self
+            .pick(scores, most, base.effects().is_empty())
+            .into_iter()
+            .map(|score| add(&base.fit.estimate, score.start))
+            .collect();
+        let mut fitted = starts
+            .par_iter()
+            .map(|start| self.fit(start))
+            .collect::<Result<Vec<_>, _>>()?;
+        fitted.retain(|hypothesis| hypothesis.fit.objective.is_finite());
+        sort(&mut fitted);
+        // The same effect from several shapes: the best stays.
+        let mut seen = Vec::new();
+        fitted.retain(|hypothesis| {
+            let key = hypothesis.key();
+            let fresh = !seen.contains(&key);
+            if fresh {
+                seen.push(key);
+            }
+            fresh
+        });
+        Ok(fitted)
+    }
+
+    /// Scores of all candidates that are not in the set yet, shapes included, best first.
+    fn scores(&self, base: &Hypothesis) -> Result<Vec<Score>, EstimateError> {
+        let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
+        let scored = self
+            .candidates
+            .par_iter()
+            .filter(|(candidate, _)| !base.has(candidate))
+            .map(|(candidate, scale)| {
+                if candidate.effect.family() == Family::NominalParameter {
+                    // Already adjustable under its prior: its score starts from there.
+                    return Ok(nominal_score(base, candidate));
+                }
+                score(&linear, candidate, scale)
+            })
+            .collect::<Result<Vec<_>, EstimateError>>()?;
+        let mut scores: Vec<Score> = scored.into_iter().flatten().collect();
+        scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        Ok(scores)
+    }
+
+    /// The best `most` scores, two shapes of a candidate at most. For single effects every kind
+    /// gets a fit at its best place: the linear score says little where the gap is large.
+    fn pick(&self, scores: Vec<Score>, most: usize, every_kind: bool) -> Vec<Score> {
+        let mut picked: Vec<Score> = Vec::new();
+        for score in scores {
+            let twins = picked
+                .iter()
+                .filter(|p| name(&p.start) == name(&score.start))
+                .count();
+            let kin = picked
+                .iter()
+                .any(|p| p.start.effect.kind() == score.start.effect.kind());
+            let room = picked.len() < most && score.gain > HOPELESS;
+            if twins < 2 && (room || (every_kind && !kin)) {
+                picked.push(score);
+            }
+        }
+        picked
+    }
+
+    /// Sets of one, two and three effects that were fitted, best first.
+    pub(crate) fn run(
+        &self,
+        base: &Hypothesis,
+        step: &(dyn Fn(&str) + Sync),
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        step("single effects");
+        let mut pool = self.extend(base, FITTED[0])?;
+        let mut front = pool.clone();
+        for (size, survivors) in SURVIVORS.iter().enumerate() {
+            step(["pairs of effects", "sets of three"][size]);
+            let mut next: Vec<Hypothesis> = Vec::new();
+            for survivor in front.iter().take(*survivors) {
+                for hypothesis in self.extend(survivor, FITTED[size + 1])? {
+                    match next
+                        .iter_mut()
+                        .find(|known| known.key() == hypothesis.key())
+                    {
+                        Some(known) if known.evidence >= hypothesis.evidence => {}
+                        Some(known) => *known = hypothesis,
+                        None => next.push(hypothesis),
+                    }
+                }
+            }
+            sort(&mut next);
+            pool.extend(next.iter().cloned());
+            front = next;
+        }
+        sort(&mut pool);
+        Ok(pool)
+    }
+}
+
+pub(crate) fn sort(hypotheses: &mut [Hypothesis]) {
+    hypotheses.sort_by(|a, b| {
+        b.evidence
+            .total_cmp(&a.evidence)
+            .then_with(|| a.key().cmp(&b.key()))
+    });
+}
+
+/// A start with one more effect. A nominal parameter that becomes an effect loses its prior.
+pub(crate) fn add(start: &Start, effect: Placed) -> Start {
+    let mut next = start.clone();
+    next.nominal.retain(|p| name(p) != name(&effect));
+    next.effects.push(effect);
+    next
+}
+
+/// A start without one of its effects. A nominal parameter gets its prior back.
+pub(crate) fn remove(start: &Start, index: usize) -> Start {
+    let mut next = start.clone();
+    let mut removed = next.effects.remove(index);
+    if removed.effect.family() == Family::NominalParameter {
+        removed.values = neutral(&removed);
+        next.nominal.push(removed);
+    }
+    next
+}
+
+fn neutral(placed: &Placed) -> Vec<f64> {
+    placed
+        .effect
+        .parameters()
+        .iter()
+        .map(|p| p.neutral.unwrap_or(0.0))
+        .collect()
+}
+
+fn nominal_score(base: &Hypothesis, candidate: &Candidate) -> Vec<Score> {
+    let nominal = &base.fit.estimate.nominal;
+    nominal
+        .iter()
+        .filter(|placed| same(placed, candidate))
+        .map(|placed| Score {
+            gain: f64::MAX,
+            start: placed.clone(),
+        })
+        .collect()
+}

@@ -1,0 +1,227 @@
+//! From fitted sets to an answer: what earns its place, what rivals it, what is left.
+
+use rayon::prelude::*;
+use simgap_effects::{Family, Placed};
+use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states};
+
+use crate::evidence::probabilities;
+use crate::search::{Hypothesis, Search, remove, sort};
+
+/// Evidence an effect must bring beyond its own penalty. Calibrated on generated cases so that
+/// noise alone earns an effect in fewer than one case in twenty.
+pub(crate) const EARNS: f64 = 6.0;
+/// Smallest relative fall of the squared discrepancy that counts as an effect: below it the
+/// integration of the nominal model is no better.
+pub(crate) const RELEVANT: f64 = 0.02;
+/// A rival whose evidence is this close cannot be told from the named effect.
+pub(crate) const INDISTINGUISHABLE: f64 = 4.0;
+/// Share of the gap (above the noise floor) that a verdict must close, else the cause is unknown.
+pub(crate) const CLOSES: f64 = 0.6;
+/// Share of the training records that the confirmation learns from.
+const LEARNT: f64 = 0.7;
+/// A further effect must lower the squared discrepancy on samples it was not fitted to by this much.
+const CONFIRMED: f64 = 0.01;
+
+/// A rival of one effect of a set.
+#[derive(Clone)]
+pub(crate) struct Swap {
+    /// What would stand in its place.
+    pub(crate) placed: Placed,
+    /// Evidence of the set with it.
+    pub(crate) evidence: f64,
+}
+
+/// One effect of the answer with its rivals.
+pub(crate) struct Judged {
+    pub(crate) placed: Placed,
+    pub(crate) probability: f64,
+    /// Evidence lost without it.
+    pub(crate) worth: f64,
+    /// Relative rise of the squared discrepancy without it.
+    pub(crate) relevance: f64,
+    pub(crate) swaps: Vec<Swap>,
+}
+
+/// Mean over the channels of V_c relative to a reference.
+fn relative(variance: &[f64], reference: &[f64]) -> f64 {
+    let ratios = variance
+        .iter()
+        .zip(reference)
+        .map(|(v, r)| v / r.max(f64::MIN_POSITIVE));
+    ratios.sum::<f64>() / variance.len().max(1) as f64
+}
+
+/// How much the squared discrepancy rises, relative, when going from one fit to a poorer one.
+pub(crate) fn rise(poorer: &Fit, better: &Fit) -> f64 {
+    // The channel that profits most decides: an effect may show on one channel alone.
+    let ratios = poorer.variance.iter().zip(&better.variance);
+    let best = ratios
+        .map(|(p, b)| 1.0 - b / p.max(f64::MIN_POSITIVE))
+        .fold(f64::MIN, f64::max);
+    best.max(1.0 - relative(&better.variance, &poorer.variance))
+}
+
+/// The set without its i-th effect, fitted again.
+fn without(
+    search: &Search<'_>,
+    set: &Hypothesis,
+    index: usize,
+) -> Result<Hypothesis, EstimateError> {
+    search.fit(&remove(&set.fit.estimate, index))
+}
+
+/// Takes effects off a set until every one earns its place by evidence, by relevance and on
+/// samples that were held back.
+pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, EstimateError> {
+    let mut set = set;
+    loop {
+        let smaller = (0..set.effects().len())
+            .into_par_iter()
+            .map(|i| without(search, &set, i))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut weakest: Option<Hypothesis> = None;
+        for subset in smaller {
+            let earns = set.evidence - subset.evidence > EARNS
+                && rise(&subset.fit, &set.fit) > RELEVANT
+                && (set.effects().len() < 2 || confirmed(search, &set, &subset)?);
+            if !earns
+                && weakest
+                    .as_ref()
+                    .is_none_or(|w| subset.evidence > w.evidence)
+            {
+                weakest = Some(subset);
+            }
+        }
+        match weakest {
+            Some(subset) => set = subset,
+            None => return Ok(set),
+        }
+    }
+}
+
+/// Whether the larger set predicts better what neither was fitted to.
+fn confirmed(
+    search: &Search<'_>,
+    larger: &Hypothesis,
+    smaller: &Hypothesis,
+) -> Result<bool, EstimateError> {
+    let left = [larger, smaller]
+        .into_par_iter()
+        .map(|set| held_back_variance(search.problem, &set.fit.estimate, &search.weights))
+        .collect::<Result<Vec<_>, _>>()?;
+    // One channel that profits is enough, as long as the others do not pay for it.
+    let ratios: Vec<f64> = left[0].iter().zip(&left[1]).map(|(l, s)| l / s).collect();
+    let best = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let geometric: f64 = ratios.iter().map(|r| r.ln()).sum();
+    Ok(best < 1.0 - CONFIRMED && geometric < 0.0)
+}
+
+/// V_c on the last part of each run after a fit to the first part.
+fn held_back_variance(
+    problem: &Problem,
+    start: &Start,
+    weights: &Weights,
+) -> Result<Vec<f64>, EstimateError> {
+    let cut = |len: usize| (len as f64 * LEARNT) as usize;
+    let learnt = problem.with_runs(
+        problem
+            .runs
+            .iter()
+            .map(|r| r.slice(0..cut(r.len)))
+            .collect(),
+    );
+    let kept = problem.with_runs(
+        problem
+            .runs
+            .iter()
+            .map(|r| r.slice(cut(r.len)..r.len))
+            .collect(),
+    );
+    let estimate = fit(&learnt, start, weights)?.estimate;
+    let effects: Vec<Placed> = estimate
+        .effects
+        .into_iter()
+        .chain(estimate.nominal)
+        .collect();
+    Ok(fit_initial_states(&kept, &effects, weights)?.variance)
+}
+
+/// Finds the rivals of each effect of a set and weighs them.
+pub(crate) fn judge(
+    search: &Search<'_>,
+    set: &Hypothesis,
+    most_rivals: usize,
+) -> Result<Vec<Judged>, EstimateError> {
+    (0..set.effects().len())
+        .map(|i| {
+            let placed = set.effects()[i].clone();
+            let subset = without(search, set, i)?;
+            let mut rivals = search.extend(&subset, most_rivals)?;
+            rivals.retain(|rival| rival.key() != set.key());
+            sort(&mut rivals);
+            let mut evidence = vec![set.evidence, subset.evidence];
+            evidence.extend(rivals.iter().map(|rival| rival.evidence));
+            let swaps = rivals
+                .iter()
+                .filter_map(|rival| {
+                    let placed = rival.effects().last()?.clone();
+                    Some(Swap {
+                        placed,
+                        evidence: rival.evidence,
+                    })
+                })
+                .collect();
+            Ok(Judged {
+                placed,
+                probability: probabilities(&evidence)[0],
+                worth: set.evidence - subset.evidence,
+                relevance: rise(&subset.fit, &set.fit),
+                swaps,
+            })
+        })
+        .collect()
+}
+
+/// The smallest set of nominal parameters that explains the gap, with all others exactly nominal.
+/// Empty when none earns its place against the model as given.
+pub(crate) fn nominal_set(
+    search: &Search<'_>,
+    initial: &[Vec<f64>],
+) -> Result<Hypothesis, EstimateError> {
+    let start = Start {
+        effects: vec![],
+        nominal: vec![],
+        initial: initial.to_vec(),
+    };
+    let mut set = search.fit(&start)?;
+    loop {
+        let starts: Vec<Start> = search
+            .candidates
+            .iter()
+            .map(|(candidate, _)| candidate)
+            .filter(|c| c.effect.family() == Family::NominalParameter && !set.has(c))
+            .map(|candidate| {
+                let mut next = set.fit.estimate.clone();
+                next.effects.push(Placed {
+                    effect: candidate.effect,
+                    at: candidate.at.clone(),
+                    values: vec![1.0],
+                });
+                next
+            })
+            .collect();
+        let mut larger = starts
+            .par_iter()
+            .map(|start| search.fit(start))
+            .collect::<Result<Vec<_>, _>>()?;
+        sort(&mut larger);
+        match larger.into_iter().next() {
+            Some(best)
+                if best.evidence - set.evidence > EARNS && rise(&set.fit, &best.fit) > RELEVANT =>
+            {
+                set = best;
+            }
+            _ => return Ok(set),
+        }
+    }
+}
