@@ -22,7 +22,7 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
     let effects: Vec<NamedEffect> = answer
         .judged
         .iter()
-        .zip(&answer.set.fit.intervals)
+        .zip(&answer.estimate.intervals)
         .map(|(judged, intervals)| NamedEffect {
             kind: judged.placed.effect.kind().to_string(),
             at: judged.placed.at.clone(),
@@ -102,10 +102,10 @@ fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
     let Some(run) = train.runs.first() else {
         return vec![];
     };
-    let Ok(simulator) = train.simulator(&answer.set.fit.estimate.nominal) else {
+    let Ok(simulator) = train.simulator(&answer.estimate.estimate.nominal) else {
         return vec![];
     };
-    let initial = &answer.set.fit.estimate.initial[0];
+    let initial = &answer.estimate.estimate.initial[0];
     let mut sentences = Vec::new();
     for (c, output) in train.model.outputs.iter().enumerate() {
         let place = match (&output.at, &output.between) {
@@ -242,7 +242,7 @@ fn shares_of<'a>(answer: &Answer, judged: &'a Judged) -> Vec<(&'a Placed, f64)> 
 
 /// How the cause spreads over the places: each named effect counts by what it explains, each of
 /// its rivals by its probability.
-pub(crate) fn locations(train: &Problem, answer: &Answer, unknown: bool) -> Vec<LocationShare> {
+pub(crate) fn locations(answer: &Answer, unknown: bool) -> Vec<LocationShare> {
     let mut shares: Vec<LocationShare> = Vec::new();
     let mut add = |at: &Location, share: f64| match shares.iter_mut().find(|s| &s.at == at) {
         Some(known) => known.share += share,
@@ -263,7 +263,6 @@ pub(crate) fn locations(train: &Problem, answer: &Answer, unknown: bool) -> Vec<
             }
         }
     }
-    let _ = train;
     let sum: f64 = shares.iter().map(|s| s.share).sum();
     shares
         .iter_mut()

@@ -10,7 +10,7 @@ use crate::DiagnoseError;
 const HELD_BACK: f64 = 1.0 / 3.0;
 
 /// Samples the search may use; more make it slower, not wiser.
-const SEARCH_SAMPLES: usize = 40_000;
+const SEARCH_SAMPLES: usize = 16_000;
 
 /// Records in the units of the model, divided.
 pub(crate) struct Data {

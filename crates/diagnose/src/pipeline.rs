@@ -11,12 +11,14 @@ use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
 use crate::search::{Hypothesis, Search, name};
-use crate::verdict::{EARNS, Judged, RELEVANT, judge, nominal_set, prune, rise};
+use crate::verdict::{Judged, judge, nominal_set, prune};
 use crate::{DiagnoseError, answer, locate};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
 const RECALIBRATION_PRIOR: f64 = 0.5;
-/// Sets that go on from the search to the whole of the training records.
+/// A fit of the search stops when a step gains less than this: rivals are told apart by more.
+const SEARCH_CONVERGED: f64 = 0.1;
+/// Sets that are fitted again once the colour of the residual is known.
 const FINALISTS: usize = 6;
 /// Rivals fitted for each named effect.
 const RIVALS: usize = 8;
@@ -46,14 +48,14 @@ pub struct Outcome {
     pub series: Vec<CheckSeries>,
 }
 
-/// The best set found and what it is compared with, on the whole of the training records.
+/// The best set found, as judged in the search, and what it is compared with.
 pub(crate) struct Answer {
     pub(crate) set: Hypothesis,
+    /// The same set fitted to all training samples.
+    pub(crate) estimate: Fit,
     pub(crate) judged: Vec<Judged>,
     /// Single effects, best first.
     pub(crate) singles: Vec<Hypothesis>,
-    /// Without any effect, nominal parameters under their prior.
-    pub(crate) base: Hypothesis,
     /// Without any effect, nominal parameters as given.
     pub(crate) nominal: Fit,
 }
@@ -90,8 +92,13 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
 
     progress("check records");
     let nominal_placed: Vec<Placed> = vec![];
-    let mut placed: Vec<Placed> = answer.set.effects().to_vec();
-    placed.extend(answer.set.fit.estimate.nominal.iter().cloned());
+    let estimate = &answer.estimate.estimate;
+    let placed: Vec<Placed> = estimate
+        .effects
+        .iter()
+        .chain(&estimate.nominal)
+        .cloned()
+        .collect();
     let predictions = [&nominal_placed, &recalibrated.estimate.nominal, &placed]
         .into_par_iter()
         .map(|effects| predict(&check, effects, &plain))
@@ -111,7 +118,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let places = locate_places(request.model);
     let r#where = Where {
         channels: locate::channels(&check, &predictions[0]),
-        locations: answer::locations(&train, &answer, left_unknown),
+        locations: answer::locations(&answer, left_unknown),
         bands: locate::bands(&check, &predictions[0]),
         times: locate::times(&check, &predictions[0]),
         states: locate::states(&check, &predictions[0], &places)?,
@@ -170,89 +177,65 @@ fn search(
     let channels = request.model.outputs.len();
     let colour = |fit: &Fit| Weights {
         independence: independence(fit, channels),
+        converged: SEARCH_CONVERGED,
         ..Weights::independent(channels)
     };
     let short = train.with_runs(excerpts(&train.runs));
-    let start = |problem: &Problem| -> Result<Start, DiagnoseError> {
-        let initial = fit_initial_states(problem, &[], &Weights::independent(channels))?;
-        Ok(Start {
-            effects: vec![],
-            nominal: nominal_parameters(problem),
-            initial: initial.estimate.initial,
-        })
+    let plain = Weights::independent(channels);
+    let first = Start {
+        effects: vec![],
+        nominal: nominal_parameters(&short),
+        initial: fit_initial_states(&short, &[], &plain)?.estimate.initial,
     };
     // The search, with the colour of the discrepancy as known before it.
-    let first = start(&short)?;
     let weights = colour(recalibrated);
     let baseline = fit(&short, &first, &weights)?;
-    let mut searching = Search::new(&short, weights, &baseline, request.withheld)?;
-    let base = searching.fit(&first)?;
-    let pool = searching.run(&base, progress)?;
+    let mut search = Search::new(&short, weights, &baseline, request.withheld)?;
+    let base = search.fit(&first)?;
+    let pool = search.run(&base, progress)?;
 
-    // The finalists, with the colour of the best one's residual, on all samples.
+    // The finalists, with the colour of the best one's residual.
     progress("finalists");
-    let best = pool.first().unwrap_or(&base);
-    let weights = colour(&best.fit);
-    searching.reweigh(weights.clone());
-    let mut full = Search::new(
-        train,
-        weights,
-        &baseline_for(train, &first)?,
-        request.withheld,
-    )?;
-    let again = |set: &Hypothesis| -> Result<Hypothesis, DiagnoseError> {
-        let mut start = set.fit.estimate.clone();
-        start.initial = nominal.estimate.initial.clone();
-        Ok(full.fit(&start)?)
+    search.reweigh(colour(&pool.first().unwrap_or(&base).fit));
+    let again = |sets: &[Hypothesis]| -> Result<Vec<Hypothesis>, DiagnoseError> {
+        let mut sets = sets
+            .par_iter()
+            .map(|set| search.fit(&set.fit.estimate))
+            .collect::<Result<Vec<_>, _>>()?;
+        crate::search::sort(&mut sets);
+        Ok(sets)
     };
-    let mut finalists = pool
-        .iter()
-        .take(FINALISTS)
-        .collect::<Vec<_>>()
-        .into_par_iter()
-        .map(again)
-        .collect::<Result<Vec<_>, _>>()?;
-    crate::search::sort(&mut finalists);
-    let base = again(&base)?;
-    full.reweigh(colour(&finalists.first().unwrap_or(&base).fit));
-    let refit = |set: &Hypothesis| full.fit(&set.fit.estimate);
-    let mut finalists = finalists
-        .par_iter()
-        .map(refit)
-        .collect::<Result<Vec<_>, _>>()?;
-    crate::search::sort(&mut finalists);
-    let base = refit(&base)?;
-
-    progress("verdict");
-    let mut set = prune(
-        &full,
-        finalists.into_iter().next().unwrap_or_else(|| base.clone()),
-    )?;
-    if set.effects().is_empty() {
-        set = nominal_set(&full, &nominal.estimate.initial)?;
-    }
-    let judged = judge(&full, &set, RIVALS)?;
+    let finalists = again(&pool[..pool.len().min(FINALISTS)])?;
     let singles: Vec<Hypothesis> = pool
         .into_iter()
         .filter(|set| set.effects().len() == 1)
         .collect();
+    let singles = again(&singles)?;
+
+    progress("verdict");
+    let best = finalists.into_iter().next().unwrap_or(base);
+    let mut set = prune(&search, best)?;
+    if set.effects().is_empty() {
+        set = nominal_set(&search, &first.initial)?;
+    }
+    let judged = judge(&search, &set, RIVALS)?;
+
+    // The answer, on all samples.
+    progress("final fit");
+    let mut start = set.fit.estimate.clone();
+    start.initial = nominal.estimate.initial.clone();
+    let weights = Weights {
+        converged: plain.converged,
+        ..search.weights.clone()
+    };
+    let estimate = fit(train, &start, &weights)?;
     Ok(Answer {
         set,
+        estimate,
         judged,
         singles,
-        base,
         nominal,
     })
-}
-
-/// Initial states and nominal parameters of the whole records, for the scales of the candidates.
-fn baseline_for(train: &Problem, short: &Start) -> Result<Fit, DiagnoseError> {
-    let weights = Weights::independent(train.model.outputs.len());
-    let start = Start {
-        initial: train.initial_guess(),
-        ..short.clone()
-    };
-    Ok(fit(train, &start, &weights)?)
 }
 
 fn locate_places(model: &Model) -> Vec<Location> {
@@ -338,12 +321,6 @@ fn series(
                 .collect(),
         })
         .collect()
-}
-
-/// Whether recalibration alone, without a named parameter, says more than the model as given.
-pub(crate) fn drifted(answer: &Answer) -> bool {
-    answer.base.evidence + answer.nominal.objective > EARNS
-        && rise(&answer.nominal, &answer.base.fit) > RELEVANT
 }
 
 /// Names of a set, for messages.

@@ -46,9 +46,6 @@ pub struct Fit {
 
 /// Two-sided 95 % point of the normal distribution.
 const NORMAL_95: f64 = 1.959_964;
-/// A step that improves J by less than this is the last: a fifth of what one parameter gains from
-/// pure noise in its least noticeable direction.
-const CONVERGED: f64 = 0.02;
 const MOST_ITERATIONS: usize = 25;
 
 /// Fits a set of effects, the nominal parameters under their prior, and the initial states.
@@ -80,7 +77,7 @@ pub fn fit(problem: &Problem, start: &Start, weights: &Weights) -> Result<Fit, E
         let gain = objective - value;
         (theta, objective) = (next, value);
         at = linearise(problem, &layout, &theta)?;
-        if gain < CONVERGED {
+        if gain < weights.converged {
             break;
         }
     }

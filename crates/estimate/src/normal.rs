@@ -6,9 +6,6 @@ use faer::{Mat, Side};
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Signals};
 
-/// Weight of each channel, 1 / variance of an independent sample times independence.
-pub(crate) type ChannelWeights = Vec<f64>;
-
 /// Index in θ of each column of a run.
 pub(crate) fn entries(layout: &Layout, run: usize) -> Vec<usize> {
     let own = layout.state_offset(run)..layout.state_offset(run) + layout.state_len();

@@ -30,6 +30,9 @@ pub struct Weights {
     pub accuracy: f64,
     /// Standard deviation of the prior on each nominal parameter, relative to its value.
     pub nominal_prior: f64,
+    /// A step that improves the objective by less than this is the last of a fit. One parameter
+    /// gains half a unit from pure noise.
+    pub converged: f64,
 }
 
 impl Weights {
@@ -40,6 +43,7 @@ impl Weights {
             independence: vec![1.0; channels],
             accuracy: 5e-4,
             nominal_prior: 0.04,
+            converged: 0.02,
         }
     }
 }

@@ -230,7 +230,8 @@ impl Base<'_> {
             let value = own[(i, j)] - taken;
             if i == j { value * (1.0 + 1e-9) } else { value }
         });
-        if (0..k).any(|i| !(free[(i, i)] > HIDDEN * own[(i, i)])) {
+        let seen = |i: usize| free[(i, i)] > HIDDEN * own[(i, i)];
+        if !(0..k).all(seen) {
             return None;
         }
         let b: Vec<f64> = (0..k)
