@@ -1,0 +1,168 @@
+//! The bench on which the truth is measured: finely stepped, then sampled.
+
+use simgap_effects::{Action, Placed, Sampled};
+use simgap_model::{Location, Model};
+use simgap_simulate::{Run, Simulator};
+
+use crate::BlindError;
+use crate::excitation::Signal;
+
+/// Steps of the truth per sample of the record. The diagnosis steps with the record, so that its
+/// integration errors show; odd, so that every other sample stays every other one.
+pub const OVERSAMPLING: usize = 9;
+
+/// Maps with a memory of the signal: they see it finely sampled and from before the record starts.
+/// Every other map acts on the samples that are recorded.
+const WITH_MEMORY: &[&str] = &["sensor_delay", "sensor_lag", "alternating_timing"];
+
+/// One record to be taken.
+#[derive(Debug, Clone)]
+pub(crate) struct Bench {
+    /// One for each input of the model.
+    pub(crate) signals: Vec<Signal>,
+    /// Displacement of each mass where the motion begins, m.
+    pub(crate) displacement: Vec<f64>,
+    /// Velocity of each mass where the motion begins, m/s.
+    pub(crate) velocity: Vec<f64>,
+    pub(crate) time_step_s: f64,
+    /// Samples of motion before the record starts; even.
+    pub(crate) lead: usize,
+    /// Samples of the record.
+    pub(crate) len: usize,
+    /// Time stamp of the first sample of the record, s.
+    pub(crate) start_s: f64,
+}
+
+impl Bench {
+    /// The inputs finely sampled, the lead included, nothing measured.
+    pub(crate) fn fine_run(&self, model: &Model) -> Run {
+        let step = self.time_step_s / OVERSAMPLING as f64;
+        let len = (self.lead + self.len - 1) * OVERSAMPLING + 1;
+        let begins_s = -(self.lead as f64) * self.time_step_s;
+        let sampled = |signal: &Signal| -> Vec<f64> {
+            (0..len)
+                .map(|i| signal.at(begins_s + i as f64 * step))
+                .collect()
+        };
+        Run {
+            name: String::new(),
+            start_s: self.start_s + begins_s,
+            time_step_s: step,
+            len,
+            inputs: self.signals.iter().map(sampled).collect(),
+            measured: vec![None; model.outputs.len()],
+        }
+    }
+
+    /// The inputs as recorded.
+    pub(crate) fn inputs(&self) -> Vec<Vec<f64>> {
+        let sampled = |signal: &Signal| -> Vec<f64> {
+            (0..self.len)
+                .map(|i| signal.at(i as f64 * self.time_step_s))
+                .collect()
+        };
+        self.signals.iter().map(sampled).collect()
+    }
+
+    /// The inputs as a run of the record's own rate, nothing measured.
+    pub(crate) fn coarse_run(&self, model: &Model) -> Run {
+        Run {
+            name: String::new(),
+            start_s: self.start_s,
+            time_step_s: self.time_step_s,
+            len: self.len,
+            inputs: self.inputs(),
+            measured: vec![None; model.outputs.len()],
+        }
+    }
+
+    /// Outputs, sampled. `refinement` divides the fine step further; `noise`, one signal for each
+    /// output, is added where sensors have it: before values are rounded, cut off or lost.
+    pub(crate) fn outputs(
+        &self,
+        model: &Model,
+        effects: &[Placed],
+        refinement: usize,
+        noise: Option<&[Vec<f64>]>,
+    ) -> Result<Vec<Vec<f64>>, BlindError> {
+        let (chain, plant): (Vec<Placed>, Vec<Placed>) = effects
+            .iter()
+            .cloned()
+            .partition(|placed| matches!(placed.action(), Action::Output(_)));
+        let run = self.fine_run(model);
+        let simulator = Simulator::new(model, &plant, refinement)?;
+        let fine = simulator.predict(&run, &self.state(&simulator))?;
+        Ok(fine
+            .into_iter()
+            .zip(&model.outputs)
+            .enumerate()
+            .map(|(c, (signal, output))| {
+                let noise = noise.and_then(|noise| noise.get(c));
+                self.record(signal, &output.channel, &chain, noise)
+            })
+            .collect())
+    }
+
+    /// Initial state of a simulator that may have more degrees of freedom than the model.
+    pub(crate) fn state(&self, simulator: &Simulator) -> Vec<f64> {
+        let n = simulator.state_len() / 2;
+        let mut state = vec![0.0; 2 * n];
+        for (i, (x, v)) in self.displacement.iter().zip(&self.velocity).enumerate() {
+            state[i] = *x;
+            state[n + i] = *v;
+        }
+        state
+    }
+
+    /// What the chain makes of a fine signal.
+    fn record(
+        &self,
+        mut fine: Vec<f64>,
+        channel: &str,
+        chain: &[Placed],
+        noise: Option<&Vec<f64>>,
+    ) -> Vec<f64> {
+        let here = |placed: &&Placed| placed.at == Location::Channel(channel.to_string());
+        let has_memory = |placed: &&Placed| WITH_MEMORY.contains(&placed.effect.kind());
+        let apply = |values: &[f64], placed: &Placed, time_step_s: f64| match placed.action() {
+            Action::Output(map) => map.apply(Sampled {
+                values,
+                time_step_s,
+            }),
+            _ => values.to_vec(),
+        };
+        let step = self.time_step_s / OVERSAMPLING as f64;
+        for placed in chain.iter().filter(here).filter(has_memory) {
+            fine = apply(&fine, placed, step);
+        }
+        let mut sampled: Vec<f64> = fine
+            .iter()
+            .step_by(OVERSAMPLING)
+            .skip(self.lead)
+            .copied()
+            .collect();
+        if let Some(noise) = noise {
+            sampled.iter_mut().zip(noise).for_each(|(y, e)| *y += e);
+        }
+        for placed in chain.iter().filter(here).filter(|p| !has_memory(p)) {
+            sampled = apply(&sampled, placed, self.time_step_s);
+        }
+        sampled
+    }
+
+    /// What an unknown initial state can add to the outputs: the free responses of the model to a
+    /// unit of each state, one set of outputs for each.
+    pub(crate) fn free_responses(&self, model: &Model) -> Result<Vec<Vec<Vec<f64>>>, BlindError> {
+        let simulator = Simulator::new(model, &[], OVERSAMPLING)?;
+        let mut run = self.coarse_run(model);
+        run.inputs.iter_mut().for_each(|u| u.fill(0.0));
+        (0..simulator.state_len())
+            .map(|i| {
+                let mut state = vec![0.0; simulator.state_len()];
+                // Small enough for an arm to swing like a linear oscillator.
+                state[i] = 1e-3;
+                Ok(simulator.predict(&run, &state)?)
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,205 @@
+//! The same thing by another name.
+
+use simgap_model::{InputKind, Location, Model, OutputKind};
+
+/// What cannot be told from an effect on a plant, whatever the data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equivalent {
+    /// Catalogue name.
+    pub kind: String,
+    /// Where it would act.
+    pub at: Location,
+    /// Why the two are the same.
+    pub because: &'static str,
+}
+
+/// The effects of the catalogue that act on the outputs of this model exactly as `kind` at `at`.
+///
+/// | Effect | is also | where | because |
+/// |---|---|---|---|
+/// | `constant_force` | `sensor_bias`, `constant_force` on another mass | every mass held by springs, one displacement output | a constant force shifts the rest position |
+/// | `constant_force` | `sensor_bias` | one mass with damper, without spring, one velocity output | a constant force shifts the final speed |
+/// | `input_gain` | `sensor_gain` | linear, one input, one output | the response is proportional to the input |
+/// | `input_gain` | `mass_error` | one mass that nothing holds | only force over mass counts |
+/// | `input_gain` | `damping_error`, `stiffness_error` | one member alone on a stand | only their product counts |
+/// | `input_delay`, `input_lag` | `sensor_delay`, `sensor_lag` | linear, one input, one output | linear elements in a row commute |
+/// | `harmonic_force` | `tone_pickup` | linear, one output | the steady response is a tone |
+/// | `presliding_friction` | `hysteresis` | the same place | Dahl's law is Bouc and Wen's with n = 1, γ = 0 |
+///
+/// Each row holds in both directions but the last, which needs the more general law to take a
+/// special value. The initial state is unknown to the diagnosis and explains transients.
+///
+/// ```
+/// use simgap_blind::equivalents;
+/// use simgap_model::{Location, Model};
+/// let model = Model::from_toml(r#"
+/// schema = "simgap-model/1"
+/// name = "one mass"
+/// [[mass]]
+/// name = "table"
+/// value = 2.0
+/// [[spring]]
+/// name = "leaf"
+/// between = ["table", "ground"]
+/// stiffness = 800.0
+/// [[output]]
+/// channel = "y"
+/// kind = "displacement"
+/// at = "table"
+/// "#)?;
+/// let same = equivalents("sensor_bias", &Location::Channel("y".into()), &model);
+/// assert_eq!(same[0].kind, "constant_force");
+/// # Ok::<(), simgap_model::ModelError>(())
+/// ```
+#[must_use]
+pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> {
+    let mut classes = vec![];
+    classes.extend(rest_position(model));
+    classes.extend(final_speed(model));
+    classes.extend(proportional(model));
+    classes.extend(commuting(model));
+    let mut found: Vec<Equivalent> = Vec::new();
+    for (members, because) in classes {
+        if !members.iter().any(|(k, a)| *k == kind && same_place(a, at)) {
+            continue;
+        }
+        for (other, place) in members {
+            if other == kind && same_place(&place, at) {
+                continue;
+            }
+            found.push(Equivalent {
+                kind: other.to_string(),
+                at: place,
+                because,
+            });
+        }
+    }
+    if kind == "presliding_friction" {
+        found.push(Equivalent {
+            kind: "hysteresis".to_string(),
+            at: at.clone(),
+            because: "Dahl's law is Bouc and Wen's with n = 1 and γ = 0",
+        });
+    }
+    found
+}
+
+/// Whether two places are one, whichever way round a pair is written.
+pub(crate) fn same_place(a: &Location, b: &Location) -> bool {
+    match (a, b) {
+        (Location::Between(a), Location::Between(b)) => simgap_model::same_pair(a, b),
+        _ => a == b,
+    }
+}
+
+/// Effects that do the same, and why.
+type Class = (Vec<(&'static str, Location)>, &'static str);
+
+fn linear(model: &Model) -> bool {
+    model.pendulums.is_empty() && model.loads.is_empty() && model.effects.is_empty()
+}
+
+fn forces(model: &Model) -> Vec<(&'static str, Location)> {
+    let at = |mass: &simgap_model::Mass| ("constant_force", Location::Mass(mass.name.clone()));
+    model.masses.iter().map(at).collect()
+}
+
+fn rest_position(model: &Model) -> Option<Class> {
+    let held = model
+        .static_deflection(&vec![1.0; model.dof_count()])
+        .is_ok();
+    let mut displacements = model
+        .outputs
+        .iter()
+        .filter(|output| output.kind == OutputKind::Displacement);
+    let (Some(only), None) = (displacements.next(), displacements.next()) else {
+        return None;
+    };
+    if !(held && linear(model) && model.dof_count() > 0) {
+        return None;
+    }
+    let mut members = forces(model);
+    members.push(("sensor_bias", Location::Channel(only.channel.clone())));
+    let because =
+        "a constant force shifts the rest position, and only one displacement is measured";
+    Some((members, because))
+}
+
+fn final_speed(model: &Model) -> Option<Class> {
+    let [only] = model.outputs.as_slice() else {
+        return None;
+    };
+    let free = model.springs.is_empty() && !model.dampers.is_empty();
+    if !(linear(model) && free && model.dof_count() == 1 && only.kind == OutputKind::Velocity) {
+        return None;
+    }
+    let mut members = forces(model);
+    members.push(("sensor_bias", Location::Channel(only.channel.clone())));
+    Some((members, "a constant force shifts the final speed"))
+}
+
+fn proportional(model: &Model) -> Option<Class> {
+    let ([input], [output]) = (model.inputs.as_slice(), model.outputs.as_slice()) else {
+        return None;
+    };
+    if !linear(model) {
+        return None;
+    }
+    let mut members = vec![
+        ("input_gain", Location::Input(input.channel.clone())),
+        ("sensor_gain", Location::Channel(output.channel.clone())),
+    ];
+    if let ([mass], [], []) = (
+        model.masses.as_slice(),
+        model.springs.as_slice(),
+        model.dampers.as_slice(),
+    ) {
+        members.push(("mass_error", Location::Mass(mass.name.clone())));
+    }
+    if model.masses.is_empty() && input.kind == InputKind::Displacement {
+        match (model.springs.as_slice(), model.dampers.as_slice()) {
+            ([], [damper]) => {
+                members.push(("damping_error", Location::Between(damper.between.clone())));
+            }
+            ([spring], []) => {
+                members.push(("stiffness_error", Location::Between(spring.between.clone())));
+            }
+            _ => {}
+        }
+    }
+    let because = "the response is proportional to the input, and there is one of each";
+    Some((members, because))
+}
+
+fn commuting(model: &Model) -> Vec<Class> {
+    let [output] = model.outputs.as_slice() else {
+        return vec![];
+    };
+    if !linear(model) {
+        return vec![];
+    }
+    let sensor = || Location::Channel(output.channel.clone());
+    let mut classes = vec![];
+    if let [input] = model.inputs.as_slice() {
+        for (first, last) in [("input_delay", "sensor_delay"), ("input_lag", "sensor_lag")] {
+            classes.push((
+                vec![
+                    (first, Location::Input(input.channel.clone())),
+                    (last, sensor()),
+                ],
+                "linear elements in a row commute, and there is one input and one output",
+            ));
+        }
+    }
+    if model.dof_count() > 0 {
+        let mut tones = vec![("tone_pickup", sensor())];
+        for mass in &model.masses {
+            tones.push(("harmonic_force", Location::Mass(mass.name.clone())));
+        }
+        classes.push((
+            tones,
+            "the steady response to a harmonic force is a tone, and there is one output",
+        ));
+    }
+    classes
+}

@@ -1,0 +1,40 @@
+//! Why a case cannot be generated.
+
+use simgap_model::ModelError;
+use simgap_record::RecordError;
+use simgap_simulate::SimulateError;
+use thiserror::Error;
+
+/// Why a case cannot be generated.
+#[derive(Debug, Error)]
+pub enum BlindError {
+    /// A plant is not a model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The truth cannot be simulated.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// The truth does not make a record.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// A recipe names a kind that does not exist.
+    #[error("recipe \"{found}\": unknown kind, needed is one of: {known}")]
+    UnknownKind {
+        /// As asked for.
+        found: String,
+        /// What there is.
+        known: String,
+    },
+    /// No plant, place and size was found at which the effect matters and can be reproduced.
+    #[error(
+        "case {number}, recipe \"{recipe}\": none of {attempts} draws has an effect of the needed size"
+    )]
+    NoCase {
+        /// Number of the case.
+        number: usize,
+        /// What was asked for.
+        recipe: String,
+        /// Draws tried.
+        attempts: u64,
+    },
+}

@@ -1,0 +1,222 @@
+//! How large an effect must be to matter.
+
+use simgap_effects::{Effect, SiteScale};
+use simgap_model::{Location, Model, OutputKind};
+use simgap_simulate::Simulator;
+
+use crate::BlindError;
+use crate::bench::Bench;
+use crate::gap::{mean, std};
+use crate::random::Random;
+
+/// Typical sizes at a place while the nominal plant moves on a bench.
+pub(crate) fn site_scale(
+    model: &Model,
+    bench: &Bench,
+    at: &Location,
+) -> Result<SiteScale, BlindError> {
+    let simulator = Simulator::new(model, &[], 1)?;
+    let run = bench.fine_run(model);
+    let path = simulator.path(&run, &bench.state(&simulator), at)?;
+    let outputs = bench.outputs(model, &[], 1, None)?;
+    let names: Vec<&String> = match at {
+        Location::Between(pair) => pair.iter().collect(),
+        Location::Mass(mass) => vec![mass],
+        Location::Input(_) | Location::Channel(_) => vec![],
+    };
+    let largest = model
+        .masses
+        .iter()
+        .filter(|mass| names.contains(&&mass.name))
+        .map(|mass| mass.value)
+        .fold(0.0, f64::max);
+    let measured_force = model
+        .outputs
+        .iter()
+        .zip(&outputs)
+        .filter(|(output, _)| output.kind == OutputKind::Force)
+        .map(|(_, signal)| std(signal))
+        .fold(0.0, f64::max);
+    let inertia = largest * std(&path.acceleration);
+    let signal = match at {
+        Location::Channel(name) => model
+            .outputs
+            .iter()
+            .position(|output| &output.channel == name)
+            .map_or(0.0, |i| std(&outputs[i])),
+        Location::Input(name) => model
+            .inputs
+            .iter()
+            .position(|input| &input.channel == name)
+            .map_or(0.0, |i| std(&run.inputs[i])),
+        Location::Between(_) | Location::Mass(_) => 0.0,
+    };
+    let positive = |value: f64| if value > 0.0 { value } else { 1.0 };
+    Ok(SiteScale {
+        displacement_m: positive(std(&path.displacement)),
+        velocity_m_per_s: positive(std(&path.velocity)),
+        force_n: positive(if inertia > 0.0 {
+            inertia
+        } else {
+            measured_force
+        }),
+        signal: positive(signal),
+        time_step_s: bench.time_step_s,
+        duration_s: bench.len as f64 * bench.time_step_s,
+    })
+}
+
+/// Parameter values of a random instance: one of the effect's starts with its proportions and
+/// shape moved, so that no search begins at the truth.
+pub(crate) fn instance(random: &mut Random, effect: &dyn Effect, scale: &SiteScale) -> Vec<f64> {
+    let starts = effect.starts(scale);
+    let Some(start) = random.pick(&starts).cloned() else {
+        return vec![];
+    };
+    let flip = random.sign();
+    let mut values: Vec<f64> = effect
+        .parameters()
+        .iter()
+        .zip(start)
+        .map(|(parameter, value)| match parameter.neutral {
+            None => value * random.log_uniform(0.6, 1.6),
+            Some(neutral) => {
+                let sign = if parameter.lower < neutral { flip } else { 1.0 };
+                neutral + sign * (value - neutral) * random.uniform(0.8, 1.25)
+            }
+        })
+        .collect();
+    if effect.kind() == "stribeck_friction" {
+        // With equal levels it would be Coulomb's.
+        values[1] = values[0] * random.uniform(1.4, 2.2);
+    }
+    within_bounds(effect, values)
+}
+
+/// The instance made larger or smaller, its shape kept.
+pub(crate) fn scaled(effect: &dyn Effect, instance: &[f64], factor: f64) -> Vec<f64> {
+    let values = effect
+        .parameters()
+        .iter()
+        .zip(instance)
+        .map(|(parameter, &value)| match parameter.neutral {
+            None => value,
+            // A limit that vanishes at infinity comes closer as the effect grows.
+            Some(neutral) if neutral.is_infinite() => value / factor,
+            Some(neutral) => neutral + factor * (value - neutral),
+        })
+        .collect();
+    within_bounds(effect, values)
+}
+
+fn within_bounds(effect: &dyn Effect, values: Vec<f64>) -> Vec<f64> {
+    effect
+        .parameters()
+        .iter()
+        .zip(values)
+        .map(|(parameter, value)| value.clamp(parameter.lower, parameter.upper))
+        .collect()
+}
+
+/// Relative accuracy of the size: a case needs a gap of about the size drawn, no more.
+const CLOSE: f64 = 0.1;
+
+/// Finds the factor at which a gap reaches a target, by growing or shrinking from 1 until it is
+/// crossed and then halving the logarithm. `None` when it is not reached, or jumps across.
+pub(crate) fn factor_for(
+    target: f64,
+    mut gap: impl FnMut(f64) -> Result<f64, BlindError>,
+) -> Result<Option<f64>, BlindError> {
+    let beyond = |value: f64| value.is_nan() || value > target;
+    let close = |value: f64| (value / target - 1.0).abs() < CLOSE;
+    let first = gap(1.0)?;
+    if close(first) {
+        return Ok(Some(1.0));
+    }
+    let step = if beyond(first) { 0.2 } else { 5.0 };
+    let (mut here, mut there) = (1.0, step);
+    let mut crossed = false;
+    for _ in 0..7 {
+        let value = gap(there)?;
+        if close(value) {
+            return Ok(Some(there));
+        }
+        if beyond(value) != beyond(first) {
+            crossed = true;
+            break;
+        }
+        (here, there) = (there, there * step);
+    }
+    if !crossed {
+        return Ok(None);
+    }
+    let (mut low, mut high) = (f64::min(here, there), f64::max(here, there));
+    for _ in 0..12 {
+        let middle = (low * high).sqrt();
+        let value = gap(middle)?;
+        if close(value) {
+            return Ok(Some(middle));
+        }
+        if beyond(value) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok(None)
+}
+
+/// Root mean square.
+pub(crate) fn rms(values: &[f64]) -> f64 {
+    let squares: Vec<f64> = values.iter().map(|v| v * v).collect();
+    mean(&squares).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_factor_for_a_monotone_gap() -> Result<(), BlindError> {
+        for target in [1e-3, 0.4, 7.0] {
+            let gap = |s: f64| 0.3 * s.powf(1.5);
+            let factor = factor_for(target, |s| Ok(gap(s)))?.unwrap_or(f64::NAN);
+            assert!((gap(factor) / target - 1.0).abs() < CLOSE, "{target}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn verify_unreachable_gap_is_none() -> Result<(), BlindError> {
+        assert_eq!(factor_for(0.5, |_| Ok(0.1))?, None);
+        let jumps = |s: f64| if s > 3.0 { 1.0 } else { 0.01 };
+        assert_eq!(factor_for(0.5, |s| Ok(jumps(s)))?, None);
+        Ok(())
+    }
+
+    #[test]
+    fn prop_an_effect_scaled_to_nothing_is_neutral() {
+        let scale = SiteScale {
+            displacement_m: 1e-3,
+            velocity_m_per_s: 0.1,
+            force_n: 50.0,
+            signal: 2.0,
+            time_step_s: 1e-3,
+            duration_s: 10.0,
+        };
+        for &effect in simgap_effects::catalogue() {
+            for seed in 0..10 {
+                let values = instance(&mut Random::new(seed), effect, &scale);
+                assert_eq!(values.len(), effect.parameters().len());
+                for (parameter, value) in
+                    effect.parameters().iter().zip(scaled(effect, &values, 0.0))
+                {
+                    assert!((parameter.lower..=parameter.upper).contains(&value));
+                    if let Some(neutral) = parameter.neutral {
+                        assert_eq!(value, neutral, "{} {}", effect.kind(), parameter.name);
+                    }
+                }
+            }
+        }
+    }
+}
