@@ -1,0 +1,49 @@
+//! `simgap demo`: the main job on embedded data.
+
+use simgap_record::{ensure_writable_dir, write_text_atomic};
+
+use crate::args::{DemoArgs, DiagnoseArgs, Format};
+use crate::diagnose;
+use crate::error::CliError;
+
+/// Generated records of the mold oscillator; `fixtures/demo/README.md` says how they were made.
+const FILES: [(&str, &str); 5] = [
+    (
+        "README.md",
+        include_str!("../../../fixtures/demo/README.md"),
+    ),
+    (
+        "model.toml",
+        include_str!("../../../fixtures/demo/model.toml"),
+    ),
+    (
+        "train-1.csv",
+        include_str!("../../../fixtures/demo/train-1.csv"),
+    ),
+    (
+        "train-2.csv",
+        include_str!("../../../fixtures/demo/train-2.csv"),
+    ),
+    (
+        "check.csv",
+        include_str!("../../../fixtures/demo/check.csv"),
+    ),
+];
+
+/// Writes the embedded files and diagnoses them as a user would.
+pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
+    ensure_writable_dir(&args.out)?;
+    for (name, text) in FILES {
+        write_text_atomic(&args.out.join(name), text)?;
+    }
+    diagnose::run(&DiagnoseArgs {
+        model: args.out.join("model.toml"),
+        train: vec![args.out.join("train-1.csv"), args.out.join("train-2.csv")],
+        check: vec![args.out.join("check.csv")],
+        out: args.out.join("diagnosis"),
+        withhold: vec![],
+        jobs: None,
+        seed: 0,
+        format: Format::Human,
+    })
+}
