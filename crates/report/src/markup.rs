@@ -18,3 +18,78 @@ pub(crate) fn escape(text: &str) -> String {
     }
     out
 }
+
+/// HTML under construction. Elements close themselves, text is escaped.
+#[derive(Debug, Default)]
+pub(crate) struct Html {
+    out: String,
+}
+
+impl Html {
+    /// An element with further content written by `inside`.
+    pub(crate) fn within<R>(
+        &mut self,
+        tag: &str,
+        attributes: &[(&str, &str)],
+        inside: impl FnOnce(&mut Self) -> R,
+    ) -> R {
+        self.start(tag, attributes);
+        let result = inside(self);
+        self.out.push_str(&format!("</{tag}>\n"));
+        result
+    }
+
+    /// An element that holds only text.
+    pub(crate) fn element(&mut self, tag: &str, attributes: &[(&str, &str)], text: &str) {
+        self.start(tag, attributes);
+        self.text(text);
+        self.out.push_str(&format!("</{tag}>\n"));
+    }
+
+    /// An element without content or end tag.
+    pub(crate) fn void(&mut self, tag: &str, attributes: &[(&str, &str)]) {
+        self.start(tag, attributes);
+        self.out.push('\n');
+    }
+
+    /// Text.
+    pub(crate) fn text(&mut self, text: &str) {
+        self.out.push_str(&escape(text));
+    }
+
+    /// Markup that is safe already: a picture of [`crate::chart`], the style sheet.
+    pub(crate) fn raw(&mut self, markup: &str) {
+        self.out.push_str(markup);
+    }
+
+    /// What was written.
+    pub(crate) fn finish(self) -> String {
+        self.out
+    }
+
+    fn start(&mut self, tag: &str, attributes: &[(&str, &str)]) {
+        self.out.push('<');
+        self.out.push_str(tag);
+        for (name, value) in attributes {
+            self.out.push_str(&format!(" {name}=\"{}\"", escape(value)));
+        }
+        self.out.push('>');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_text_and_attributes_are_escaped() {
+        let mut html = Html::default();
+        html.within("p", &[("title", "\"><b>")], |html| {
+            html.text("a<b & 'c'\u{7}")
+        });
+        assert_eq!(
+            html.finish(),
+            "<p title=\"&quot;&gt;&lt;b&gt;\">a&lt;b &amp; &#39;c&#39;</p>\n"
+        );
+    }
+}

@@ -1,7 +1,7 @@
 //! Labelled horizontal bars.
 
-use super::canvas::{Anchor, Canvas, Drawn, FRAME, Font, Pen, SHADE, draw_svg};
-use super::palette::parse_rgb;
+use super::canvas::{Anchor, Canvas, Drawn, Font, Pen, draw_svg};
+use super::palette::{FRAME, INK, SHADE, parse_rgb};
 use super::{ChartError, ChartSize, Role};
 
 const ROW_PX: f64 = 24.0;
@@ -77,7 +77,7 @@ impl BarChart {
     /// ```
     /// use simgap_report::chart::{Bar, BarChart, Role};
     /// let bars = vec![Bar::share("y1", 0.75, Role::Nominal), Bar::share("y2", 0.25, Role::Nominal)];
-    /// assert!(BarChart::shares("Channels", bars).to_svg()?.contains("75 %"));
+    /// assert!(BarChart::shares("Channels", bars).to_svg()?.contains("75\u{a0}%"));
     /// # Ok::<(), simgap_report::chart::ChartError>(())
     /// ```
     pub fn to_svg(&self) -> Result<String, ChartError> {
@@ -119,7 +119,7 @@ impl BarChart {
         }
         let widest = |texts: &mut dyn Iterator<Item = f64>| texts.fold(0.0, f64::max);
         let label_px =
-            widest(&mut self.bars.iter().map(|b| Font::LABEL.width_px(&b.label))).min(0.46 * width);
+            widest(&mut self.bars.iter().map(|b| Font::LABEL.width_px(&b.label))).min(0.52 * width);
         let value_px = widest(
             &mut self
                 .bars
@@ -137,7 +137,6 @@ impl BarChart {
                 (left, y - 0.5 * BAR_PX),
                 (right, y + 0.5 * BAR_PX),
                 parse_rgb(SHADE),
-                true,
             )?;
             let at = |v: f64| left + (v / full).clamp(0.0, 1.0) * (right - left);
             if bar.value.is_finite() && bar.value > 0.0 {
@@ -146,11 +145,10 @@ impl BarChart {
                     (left, y - 0.5 * BAR_PX),
                     (end, y + 0.5 * BAR_PX),
                     bar.role.rgb(),
-                    true,
                 )?;
             }
             if let Some(mark) = bar.mark.filter(|m| m.is_finite()) {
-                let mut pen = Pen::hair(super::canvas::INK);
+                let mut pen = Pen::hair(INK);
                 pen.width = 20;
                 canvas.line((at(mark), y - 9.0), (at(mark), y + 9.0), pen)?;
             }

@@ -12,7 +12,7 @@ use plotters::prelude::{
 use plotters::style::Color;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::palette::parse_rgb;
+use super::palette::{INK, SOFT_INK, parse_rgb};
 use super::{ChartError, ChartSize};
 
 /// Canvas units per pixel.
@@ -25,17 +25,6 @@ const CHARACTER_WIDTH: f64 = 0.56;
 const DASH_MARK: f64 = 0.984_375;
 /// Dash and gap in canvas units.
 const DASH_PATTERN: &str = "60 40";
-
-/// Colour of text.
-pub(crate) const INK: &str = "#24292F";
-/// Colour of lesser text.
-pub(crate) const SOFT_INK: &str = "#57606A";
-/// Colour of the frame.
-pub(crate) const FRAME: &str = "#8C959F";
-/// Colour of the grid.
-pub(crate) const GRID: &str = "#E4E8EC";
-/// Fill behind highlighted stretches and bars.
-pub(crate) const SHADE: &str = "#EEF2F6";
 
 /// Where the anchor of a text lies in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -150,20 +139,10 @@ impl Canvas<'_> {
         self.0.draw_path(path, &pen.style()).map_err(failed)
     }
 
-    pub(crate) fn rect(
-        &mut self,
-        from: (f64, f64),
-        to: (f64, f64),
-        rgb: RGBColor,
-        fill: bool,
-    ) -> Drawn {
-        let style = ShapeStyle {
-            color: rgb.to_rgba(),
-            filled: fill,
-            stroke_width: 10,
-        };
+    pub(crate) fn rect(&mut self, from: (f64, f64), to: (f64, f64), rgb: RGBColor) -> Drawn {
+        let style = ShapeStyle::from(rgb.to_rgba()).filled();
         self.0
-            .draw_rect(point(from), point(to), &style, fill)
+            .draw_rect(point(from), point(to), &style, true)
             .map_err(failed)
     }
 

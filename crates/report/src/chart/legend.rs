@@ -16,8 +16,7 @@ pub(crate) struct Legend<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// Wraps the named series into rows of `width_px`. One series alone needs no legend unless it
-    /// is told from others by its name in the title, which the caller decides by naming it.
+    /// Wraps the named series into rows of `width_px`.
     pub(crate) fn new(series: &'a [Series<'a>], width_px: f64) -> Self {
         let mut entries = Vec::new();
         let (mut row, mut x) = (0, 0.0);

@@ -1,11 +1,15 @@
 //! Charts of y over x.
 
 use super::axis::{self, Axis, superscript};
-use super::canvas::{Anchor, Canvas, Drawn, FRAME, Font, GRID, Pen, SHADE, draw_svg};
+use super::canvas::{Anchor, Canvas, Drawn, Font, Pen, draw_svg};
 use super::decimate::{thin, thin_points};
 use super::legend::{Legend, ROW_PX};
-use super::palette::parse_rgb;
+use super::palette::{FRAME, GRID, SHADE, parse_rgb};
 use super::{ChartError, ChartSize, Mark, Series};
+
+/// Rows that the labels of spans may fill above the frame.
+const SPAN_ROWS: usize = 2;
+const SPAN_ROW_PX: f64 = 15.0;
 
 /// Linear or logarithmic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,14 +20,14 @@ pub enum Scale {
     Log,
 }
 
-/// A stretch of the abscissa, shaded behind the data and labelled.
+/// A stretch of the abscissa, shaded behind the data and labelled above the frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Span {
     /// Left end, in units of x.
     pub from: f64,
     /// Right end.
     pub to: f64,
-    /// Short text at its top; may be empty.
+    /// Short text above it; may be empty.
     pub label: String,
 }
 
@@ -45,7 +49,7 @@ pub struct LineChart<'a> {
     pub y_label: String,
     /// Drawn in this order, the last on top.
     pub series: Vec<Series<'a>>,
-    /// Shaded stretches.
+    /// Shaded stretches; where labels would collide, the earlier one in this list is shown.
     pub spans: Vec<Span>,
     /// Scale of the abscissa.
     pub x_scale: Scale,
@@ -177,7 +181,10 @@ impl<'c> Plot<'c> {
         );
         let legend = Legend::new(&chart.series, width - 24.0);
         let title_px = if chart.title.is_empty() { 4.0 } else { 26.0 };
-        let top = title_px + legend.rows as f64 * ROW_PX + 10.0;
+        let labelled = chart.spans.iter().filter(|s| !s.label.is_empty()).count();
+        let span_rows = labelled.min(SPAN_ROWS);
+        let above = 8.0 + span_rows as f64 * SPAN_ROW_PX;
+        let top = title_px + legend.rows as f64 * ROW_PX + above;
         let bottom = (height - if chart.x_label.is_empty() { 26.0 } else { 46.0 }).max(top + 10.0);
         let y = chart.fit_y(((bottom - top) / 42.0) as usize);
         let widest = y
@@ -188,7 +195,7 @@ impl<'c> Plot<'c> {
         let label_px = if chart.y_label.is_empty() { 4.0 } else { 24.0 };
         let left = (label_px + widest + 10.0).min(0.5 * width);
         let right = width - 16.0;
-        let x = chart.fit_x(((right - left) / 90.0) as usize);
+        let x = chart.fit_x(((right - left) / 70.0) as usize);
         Self {
             chart,
             legend,
@@ -233,12 +240,8 @@ impl<'c> Plot<'c> {
             );
             canvas.text("no data", centre, Font::LABEL, Anchor::Middle)?;
         }
-        canvas.rect(
-            (self.left, self.top),
-            (self.right, self.bottom),
-            parse_rgb(FRAME),
-            false,
-        )?;
+        let (l, r, t, b) = (self.left, self.right, self.top, self.bottom);
+        canvas.path(&[(l, t), (r, t), (r, b), (l, b), (l, t)], Pen::hair(FRAME))?;
         self.draw_labels(canvas)
     }
 
@@ -256,7 +259,7 @@ impl<'c> Plot<'c> {
 
     fn draw_spans(&self, canvas: &mut Canvas<'_>) -> Drawn {
         let log = self.chart.x_scale == Scale::Log;
-        let mut free_from = f64::MIN;
+        let mut taken: [Vec<(f64, f64)>; SPAN_ROWS] = Default::default();
         for span in &self.chart.spans {
             if span.from.is_nan() || span.to.is_nan() || (log && span.to <= 0.0) {
                 continue;
@@ -271,19 +274,22 @@ impl<'c> Plot<'c> {
             }
             // A narrow band still shows.
             let to = to.max(from + 2.0).min(self.right);
-            canvas.rect((from, self.top), (to, self.bottom), parse_rgb(SHADE), true)?;
+            canvas.rect((from, self.top), (to, self.bottom), parse_rgb(SHADE))?;
             let half = 0.5 * Font::TICK.width_px(&span.label);
             let centre = (0.5 * (from + to))
                 .clamp(self.left + half, (self.right - half).max(self.left + half));
-            // A label that would run into the one before it is left out.
-            if !span.label.is_empty() && centre - half > free_from {
-                canvas.text(
-                    &span.label,
-                    (centre, self.top + 9.0),
-                    Font::TICK,
-                    Anchor::Middle,
-                )?;
-                free_from = centre + half + 6.0;
+            if span.label.is_empty() {
+                continue;
+            }
+            // A label that would run into those already set is left out.
+            let free = |row: &Vec<(f64, f64)>| {
+                row.iter()
+                    .all(|(a, b)| centre + half < *a || centre - half > *b)
+            };
+            if let Some(row) = taken.iter().position(free) {
+                let y = self.top - 8.0 - row as f64 * SPAN_ROW_PX;
+                canvas.text(&span.label, (centre, y), Font::TICK, Anchor::Middle)?;
+                taken[row].push((centre - half - 6.0, centre + half + 6.0));
             }
         }
         Ok(())
@@ -415,6 +421,10 @@ impl LineChart<'_> {
         }
     }
 
+    fn stems(&self) -> bool {
+        self.series.iter().any(|s| s.mark == Mark::Stems)
+    }
+
     /// Fits the ordinate to the points whose abscissa is shown.
     fn fit_y(&self, tick_count: usize) -> Axis {
         let log = self.y_scale == Scale::Log;
@@ -427,8 +437,7 @@ impl LineChart<'_> {
         let values = points
             .filter(|(x, _)| (from..=to).contains(*x))
             .map(|(_, y)| *y);
-        let stems = self.series.iter().any(|s| s.mark == Mark::Stems) && !log;
-        let values = values.chain(stems.then_some(0.0));
+        let values = values.chain((self.stems() && !log).then_some(0.0));
         Axis::around(axis::extent(values, log), log, true, tick_count)
     }
 }

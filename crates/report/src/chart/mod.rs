@@ -29,10 +29,11 @@ mod palette;
 mod series;
 mod spectrum;
 
+pub(crate) use axis::superscript;
 pub use bar::{Bar, BarChart};
 pub use error::ChartError;
 pub use line::{LineChart, Scale, Span};
-pub use palette::{ROLE_COLOURS, Role, RoleColour};
+pub use palette::{NEUTRAL_COLOURS, ROLE_COLOURS, Role, RoleColour};
 pub use series::{Mark, Series};
 pub use spectrum::SpectrumChart;
 

@@ -29,7 +29,7 @@ pub struct RoleColour {
     pub dark: &'static str,
 }
 
-/// Every colour used by [`Role`], in a fixed order.
+/// Every colour used by a [`Role`], in a fixed order.
 pub const ROLE_COLOURS: [RoleColour; 9] = [
     colour("#1F2328", "#E6EDF3"),
     colour("#D55E00", "#FF9A4D"),
@@ -41,6 +41,26 @@ pub const ROLE_COLOURS: [RoleColour; 9] = [
     colour("#B07C00", "#E6B84A"),
     colour("#5D3A9B", "#B59AE8"),
 ];
+
+/// Colours without a role: text, lesser text, frame, grid, fill behind bars and stretches.
+pub const NEUTRAL_COLOURS: [RoleColour; 5] = [
+    colour(INK, "#D5DAE0"),
+    colour(SOFT_INK, "#A3ABB5"),
+    colour(FRAME, "#6E7681"),
+    colour(GRID, "#2C333B"),
+    colour(SHADE, "#242B33"),
+];
+
+/// Text.
+pub(crate) const INK: &str = "#24292F";
+/// Lesser text.
+pub(crate) const SOFT_INK: &str = "#57606A";
+/// Frames.
+pub(crate) const FRAME: &str = "#8C959F";
+/// Grid lines.
+pub(crate) const GRID: &str = "#E1E5EA";
+/// Behind highlighted stretches and bars.
+pub(crate) const SHADE: &str = "#E9EEF4";
 
 const fn colour(light: &'static str, dark: &'static str) -> RoleColour {
     RoleColour { light, dark }
@@ -95,7 +115,11 @@ mod tests {
 
     #[test]
     fn verify_every_colour_is_six_upper_case_digits() {
-        for c in ROLE_COLOURS.iter().flat_map(|c| [c.light, c.dark]) {
+        for c in ROLE_COLOURS
+            .iter()
+            .chain(&NEUTRAL_COLOURS)
+            .flat_map(|c| [c.light, c.dark])
+        {
             let RGBColor(r, g, b) = parse_rgb(c);
             assert_eq!(format!("#{r:02X}{g:02X}{b:02X}"), c);
         }
@@ -103,11 +127,11 @@ mod tests {
 
     #[test]
     fn verify_roles_have_colours_of_their_own() {
-        let mut seen: Vec<&str> = ROLE_COLOURS.iter().map(|c| c.light).collect();
+        let all = || ROLE_COLOURS.iter().chain(&NEUTRAL_COLOURS);
+        let mut seen: Vec<&str> = all().map(|c| c.light).collect();
         seen.sort_unstable();
         seen.dedup();
-        assert_eq!(seen.len(), ROLE_COLOURS.len());
-        assert_eq!(Role::Other(4), Role::Other(4));
+        assert_eq!(seen.len(), all().count());
         assert_eq!(Role::Other(0).colour(), Role::Other(4).colour());
     }
 }

@@ -1,0 +1,224 @@
+//! The charts of a page, drawn from the check records.
+
+use simgap_diagnose::{ChannelSeries, CheckSeries, Diagnosis};
+use simgap_signal::welch::{WelchOptions, welch};
+
+use super::stretch::{longest_finite_run, telling_stretch};
+use crate::chart::{ChartError, ChartSize, LineChart, Role, Scale, Series, Span, SpectrumChart};
+use crate::unit::{Prefixed, prefixed};
+use crate::wording::corrected_name;
+
+/// Two of them stand side by side on a wide page, and each still reads on a narrow one.
+pub(crate) const SIZE: ChartSize = ChartSize::new(560, 290);
+/// A spectrum of fewer samples says nothing.
+const FEWEST_SAMPLES: usize = 64;
+/// Averages wanted before the resolution is raised.
+const AVERAGES: usize = 10;
+const LONGEST_SEGMENT: usize = 8192;
+/// Bands shaded in a spectrum: the strongest, and none below this share.
+const SHADED_BANDS: usize = 4;
+const LEAST_BAND: f64 = 0.05;
+
+/// One output of one check record, ready to be drawn.
+pub(crate) struct Pictured<'a> {
+    pub(crate) record: &'a str,
+    pub(crate) time_s: &'a [f64],
+    pub(crate) channel: &'a ChannelSeries,
+    diagnosis: &'a Diagnosis,
+    /// rms of the nominal discrepancy over the standard deviation of the measurement.
+    pub(crate) nominal_gap: f64,
+}
+
+/// Every channel of every check record, the worst predicted first.
+pub(crate) fn pictured<'a>(
+    diagnosis: &'a Diagnosis,
+    series: &'a [CheckSeries],
+) -> Vec<Pictured<'a>> {
+    let mut all: Vec<Pictured<'_>> = series
+        .iter()
+        .flat_map(|record| {
+            record.channels.iter().map(move |channel| Pictured {
+                record: &record.record,
+                time_s: &record.time_s,
+                channel,
+                diagnosis,
+                nominal_gap: relative_gap(&channel.measured, &channel.nominal),
+            })
+        })
+        .collect();
+    // A stable sort: equals stay in the order of the records.
+    all.sort_by(|a, b| b.nominal_gap.total_cmp(&a.nominal_gap));
+    all
+}
+
+fn relative_gap(measured: &[f64], predicted: &[f64]) -> f64 {
+    let pairs = || {
+        let both = measured.iter().zip(predicted);
+        both.filter(|(m, p)| m.is_finite() && p.is_finite())
+    };
+    let n = pairs().count().max(1) as f64;
+    let mean = pairs().map(|(m, _)| m).sum::<f64>() / n;
+    let spread = pairs().map(|(m, _)| (m - mean).powi(2)).sum::<f64>();
+    let off = pairs().map(|(m, p)| (m - p).powi(2)).sum::<f64>();
+    if off > 0.0 && spread > 0.0 {
+        (off / spread).sqrt()
+    } else {
+        0.0
+    }
+}
+
+/// Measured minus predicted, as long as the shorter.
+fn discrepancy(measured: &[f64], predicted: &[f64]) -> Vec<f64> {
+    measured.iter().zip(predicted).map(|(m, p)| m - p).collect()
+}
+
+/// Largest size of the finite values.
+fn size_of(values: &[&[f64]]) -> f64 {
+    values
+        .iter()
+        .flat_map(|v| v.iter())
+        .filter(|v| v.is_finite())
+        .fold(0.0, |m, v| m.max(v.abs()))
+}
+
+fn scaled<'x>(name: &str, role: Role, x: &'x [f64], y: &[f64], factor: f64) -> Series<'x> {
+    let n = x.len().min(y.len());
+    let y: Vec<f64> = y[..n].iter().map(|v| v * factor).collect();
+    Series::new(name.to_owned(), role, &x[..n], y)
+}
+
+impl Pictured<'_> {
+    /// "y in C.csv".
+    pub(crate) fn name(&self) -> String {
+        format!("{} in {}", self.channel.channel, self.record)
+    }
+
+    /// Where the nominal model is worst, s; `None` where the record is short anyway.
+    pub(crate) fn worst_s(&self) -> Option<[f64; 2]> {
+        let off = discrepancy(&self.channel.measured, &self.channel.nominal);
+        let (from, to) = telling_stretch(&self.channel.measured, &off)?;
+        let (from, to) = (*self.time_s.get(from)?, *self.time_s.get(to - 1)?);
+        (from < to && from.is_finite() && to.is_finite()).then_some([from, to])
+    }
+
+    /// Measured, nominal and corrected over the whole record, or over `zoom`.
+    pub(crate) fn motion(&self, title: &str, zoom: Option<[f64; 2]>) -> Result<String, ChartError> {
+        let c = self.channel;
+        let Prefixed { unit, factor } = prefixed(c.unit, size_of(&[&c.measured]));
+        let t = self.time_s;
+        let corrected = corrected_name(self.diagnosis.verdict.status);
+        let mut chart = LineChart::new(title, "time [s]", format!("{} [{unit}]", c.channel))
+            .with(scaled("measured", Role::Measured, t, &c.measured, factor))
+            .with(scaled(
+                "model as given",
+                Role::Nominal,
+                t,
+                &c.nominal,
+                factor,
+            ))
+            .with(scaled(corrected, Role::Corrected, t, &c.corrected, factor));
+        chart.size = SIZE;
+        chart.x_range = zoom;
+        if let (None, Some([from, to])) = (zoom, self.worst_s()) {
+            chart.spans.push(Span {
+                from,
+                to,
+                label: "shown enlarged".to_owned(),
+            });
+        }
+        chart.to_svg()
+    }
+
+    /// What the model as given and the corrected one leave, over time.
+    pub(crate) fn left_over(&self, title: &str) -> Result<String, ChartError> {
+        let c = self.channel;
+        let before = discrepancy(&c.measured, &c.nominal);
+        let after = discrepancy(&c.measured, &c.corrected);
+        let Prefixed { unit, factor } = prefixed(c.unit, size_of(&[&before, &after]));
+        let mut chart = LineChart::new(title, "time [s]", format!("measured − predicted [{unit}]"))
+            .with(scaled(
+                "model as given",
+                Role::Nominal,
+                self.time_s,
+                &before,
+                factor,
+            ))
+            .with(scaled(
+                corrected_name(self.diagnosis.verdict.status),
+                Role::Corrected,
+                self.time_s,
+                &after,
+                factor,
+            ));
+        chart.size = SIZE;
+        chart.to_svg()
+    }
+
+    /// Power spectral density of both, with the strongest bands shaded; `None` if the record is
+    /// too short or its time base unusable.
+    pub(crate) fn spectrum(&self, title: &str) -> Result<Option<String>, ChartError> {
+        let c = self.channel;
+        let before = discrepancy(&c.measured, &c.nominal);
+        let after = discrepancy(&c.measured, &c.corrected);
+        let Prefixed { unit, factor } = prefixed(c.unit, size_of(&[&before]));
+        let (Some(before), Some(after)) =
+            (self.density(&before, factor), self.density(&after, factor))
+        else {
+            return Ok(None);
+        };
+        let (Some(&lowest), Some(&highest)) = (before.0.get(1), before.0.last()) else {
+            return Ok(None);
+        };
+        let square = if unit.contains(['/', ' ']) {
+            format!("({unit})²/Hz")
+        } else {
+            format!("{unit}²/Hz")
+        };
+        let corrected = corrected_name(self.diagnosis.verdict.status);
+        let mut chart = SpectrumChart::new(title, format!("density [{square}]"))
+            .with(Series::new(
+                "model as given",
+                Role::Nominal,
+                before.0,
+                before.1,
+            ))
+            .with(Series::new(corrected, Role::Corrected, after.0, after.1));
+        chart.size = SIZE;
+        chart.x_scale = Scale::Log;
+        chart.freq_range_hz = (lowest < highest).then_some([lowest, highest]);
+        chart.bands = self.bands();
+        chart.to_svg().map(Some)
+    }
+
+    /// Frequencies and densities of the longest gapless part.
+    fn density(&self, values: &[f64], factor: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+        let n = values.len().min(self.time_s.len());
+        let (from, to) = longest_finite_run(&values[..n]);
+        if to - from < FEWEST_SAMPLES {
+            return None;
+        }
+        let rate_hz = (to - from - 1) as f64 / (self.time_s[to - 1] - self.time_s[from]);
+        let run: Vec<f64> = values[from..to].iter().map(|v| v * factor).collect();
+        let segment =
+            ((2 * run.len() / (AVERAGES + 1)).max(FEWEST_SAMPLES) + 1).next_power_of_two() / 2;
+        let options = WelchOptions::new(segment.clamp(FEWEST_SAMPLES, LONGEST_SEGMENT));
+        let psd = welch(&run, rate_hz, &options).ok()?;
+        Some((psd.freq_hz, psd.density))
+    }
+
+    /// The strongest first, since their labels have precedence.
+    fn bands(&self) -> Vec<Span> {
+        let mut strongest: Vec<_> = self.diagnosis.r#where.bands.iter().collect();
+        strongest.retain(|b| b.share >= LEAST_BAND);
+        strongest.sort_by(|a, b| b.share.total_cmp(&a.share));
+        strongest.truncate(SHADED_BANDS);
+        strongest
+            .into_iter()
+            .map(|b| Span {
+                from: b.from_hz,
+                to: b.to_hz,
+                label: b.label.clone(),
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,223 @@
+//! Units out of parameter names, and prefixes that keep numbers short.
+
+use simgap_diagnose::NamedParameter;
+
+use crate::number::{at_resolution, decimal_exponent};
+
+/// A parameter name taken apart: `cubic_stiffness_n_per_m3` is "cubic stiffness" in N/m³.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Quantity {
+    pub(crate) words: String,
+    /// Empty for a pure number.
+    pub(crate) unit: String,
+}
+
+/// Splits a parameter name at its unit: the longest tail of unit words that leaves a name.
+pub(crate) fn quantity(name: &str) -> Quantity {
+    let parts: Vec<&str> = name.split('_').collect();
+    let mut start = parts.len();
+    while start > 1 && (parts[start - 1] == "per" || unit_word(parts[start - 1]).is_some()) {
+        start -= 1;
+    }
+    let mut unit = String::new();
+    let mut divided = false;
+    for part in &parts[start..] {
+        match unit_word(part) {
+            None if !divided => {
+                unit.push_str(if unit.is_empty() { "1/" } else { "/" });
+                divided = true;
+            }
+            None => unit.push('/'),
+            Some(word) => {
+                if !unit.is_empty() && !unit.ends_with('/') {
+                    unit.push(' ');
+                }
+                unit.push_str(&word);
+            }
+        }
+    }
+    Quantity {
+        words: parts[..start].join(" "),
+        unit,
+    }
+}
+
+/// `n` is N, `m3` is m³; `None` for a word that is no unit.
+fn unit_word(part: &str) -> Option<String> {
+    let (letters, power) = match part.strip_suffix(['2', '3', '4', '5']) {
+        Some(letters) => (letters, part.chars().last()),
+        None => (part, None),
+    };
+    let symbol = match letters {
+        "n" => "N",
+        "m" => "m",
+        "s" => "s",
+        "kg" => "kg",
+        "hz" => "Hz",
+        "rad" => "rad",
+        "v" => "V",
+        "pa" => "Pa",
+        _ => return None,
+    };
+    let power = match power {
+        Some('2') => "²",
+        Some('3') => "³",
+        Some('4') => "⁴",
+        Some(_) => "⁵",
+        None => "",
+    };
+    Some(format!("{symbol}{power}"))
+}
+
+/// A prefix before a unit, and the number of prefixed units in one unit.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Prefixed {
+    pub(crate) unit: String,
+    pub(crate) factor: f64,
+}
+
+/// Prefixes by power of ten.
+const PREFIXES: [(i32, &str); 7] = [
+    (-9, "n"),
+    (-6, "µ"),
+    (-3, "m"),
+    (0, ""),
+    (3, "k"),
+    (6, "M"),
+    (9, "G"),
+];
+
+/// The unit with the prefix in which `size` lies between 1 and 1000, as far as the unit is used
+/// with such prefixes: mm but not km, kN/m but not m/ks.
+pub(crate) fn prefixed(unit: &str, size: f64) -> Prefixed {
+    let lead = unit.split([' ', '/']).next().unwrap_or("");
+    let allowed = match lead {
+        "N" | "Pa" => 0..=9,
+        "V" => -6..=3,
+        "m" | "s" | "rad" => -9..=0,
+        "Hz" => 0..=6,
+        _ => 0..=0,
+    };
+    let exponent = if size > 0.0 && size.is_finite() {
+        (decimal_exponent(size).div_euclid(3) * 3).clamp(*allowed.start(), *allowed.end())
+    } else {
+        0
+    };
+    let prefix = PREFIXES
+        .iter()
+        .find(|p| p.0 == exponent)
+        .map_or("", |p| p.1);
+    Prefixed {
+        unit: format!("{prefix}{unit}"),
+        factor: 10f64.powi(-exponent),
+    }
+}
+
+/// An estimate in words and figures.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Estimate {
+    /// What it is, such as "friction force".
+    pub(crate) words: String,
+    /// With its unit, such as "2.10\u{a0}kN".
+    pub(crate) value: String,
+    /// Such as "2.05 to 2.15\u{a0}kN", or that the data do not bound it.
+    pub(crate) interval: String,
+}
+
+/// The estimate to the two digits that its interval can carry. `unit` is used where the name has
+/// none.
+pub(crate) fn estimate(parameter: &NamedParameter, unit: &str) -> Estimate {
+    let Quantity { words, unit: own } = quantity(&parameter.name);
+    let unit = if own.is_empty() { unit } else { &own };
+    let [low, high] = parameter.ci95;
+    let Prefixed { unit, factor } = prefixed(unit, parameter.value.abs());
+    let half = 0.5 * (high - low) * factor;
+    let value = parameter.value * factor;
+    let finest = decimal_exponent(value) - 5;
+    let resolution = if half.is_finite() && half > 0.0 {
+        (decimal_exponent(half) - 1).max(finest)
+    } else {
+        decimal_exponent(value) - 2
+    };
+    let resolution = resolution.min(decimal_exponent(value) - 1);
+    let space = if unit.is_empty() { "" } else { "\u{a0}" };
+    let figure = |v: f64| at_resolution(v * factor, resolution);
+    let interval = match (low.is_finite(), high.is_finite()) {
+        (true, true) => format!("{} to {}{space}{unit}", figure(low), figure(high)),
+        (true, false) => format!("above {}{space}{unit}", figure(low)),
+        (false, true) => format!("below {}{space}{unit}", figure(high)),
+        (false, false) => "not bounded by these data".to_owned(),
+    };
+    Estimate {
+        words,
+        value: format!("{}{space}{unit}", figure(parameter.value)),
+        interval,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_units_of_names() {
+        let cases = [
+            ("friction_force_n", "friction force", "N"),
+            ("cubic_stiffness_n_per_m3", "cubic stiffness", "N/m³"),
+            (
+                "quadratic_damping_n_s2_per_m2",
+                "quadratic damping",
+                "N s²/m²",
+            ),
+            ("stribeck_velocity_m_per_s", "stribeck velocity", "m/s"),
+            ("delay_s", "delay", "s"),
+            ("mass_factor", "mass factor", ""),
+            ("drift_per_s", "drift", "1/s"),
+            ("n", "n", ""),
+            ("", "", ""),
+        ];
+        for (name, words, unit) in cases {
+            let q = quantity(name);
+            assert_eq!((q.words.as_str(), q.unit.as_str()), (words, unit), "{name}");
+        }
+    }
+
+    fn shown(name: &str, value: f64, ci95: [f64; 2]) -> (String, String) {
+        let parameter = NamedParameter {
+            name: name.to_owned(),
+            value,
+            ci95,
+        };
+        let e = estimate(&parameter, "");
+        (e.value, e.interval)
+    }
+
+    #[test]
+    fn verify_estimates_carry_the_digits_of_their_interval() {
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        assert_eq!(
+            shown("friction_force_n", 2100.0, [2050.0, 2150.0]),
+            pair("2.100\u{a0}kN", "2.050 to 2.150\u{a0}kN")
+        );
+        assert_eq!(
+            shown("gap_m", 1.234e-4, [1.1e-4, 1.36e-4]),
+            pair("123\u{a0}µm", "110 to 136\u{a0}µm")
+        );
+        assert_eq!(
+            shown("mass_factor", 0.9312, [0.92, 0.943]),
+            pair("0.931", "0.920 to 0.943")
+        );
+        assert_eq!(
+            shown("cubic_stiffness_n_per_m3", 4.2e13, [3.0e13, 5.4e13]),
+            pair("42000\u{a0}GN/m³", "30000 to 54000\u{a0}GN/m³")
+        );
+        assert_eq!(
+            shown("delay_s", 0.0, [-0.01, f64::INFINITY]),
+            pair("0.00\u{a0}s", "above −0.01\u{a0}s")
+        );
+        assert_eq!(
+            shown("delay_s", 2e-3, [f64::NEG_INFINITY, f64::INFINITY]),
+            pair("2.00\u{a0}ms", "not bounded by these data")
+        );
+    }
+}

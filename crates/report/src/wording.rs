@@ -1,0 +1,176 @@
+//! Catalogue names, places and verdicts in plain words, shared by the page and the summary.
+
+use simgap_diagnose::{Diagnosis, NamedEffect, Status};
+use simgap_model::Location;
+
+use crate::number::{percent, ratio};
+use crate::unit::estimate;
+
+/// Below this a named effect is called the likely cause, not the cause.
+const SURE: f64 = 0.9;
+
+/// A catalogue name in words: "Coulomb friction", "wrong stiffness".
+pub(crate) fn kind(kind: &str) -> String {
+    match kind {
+        "mass_error" => "wrong mass".to_owned(),
+        "stiffness_error" => "wrong stiffness".to_owned(),
+        "damping_error" => "wrong damping".to_owned(),
+        "input_gain" => "wrong gain".to_owned(),
+        "coulomb_friction" => "Coulomb friction".to_owned(),
+        "stribeck_friction" => "Stribeck friction".to_owned(),
+        other => other.replace('_', " "),
+    }
+}
+
+/// A place in words that follow an effect: "between mold and ground", "on mass mold".
+pub(crate) fn place(at: &Location) -> String {
+    match at {
+        Location::Mass(m) => format!("on mass {m}"),
+        Location::Input(c) => format!("in input {c}"),
+        Location::Channel(c) => format!("in channel {c}"),
+        between @ Location::Between(_) => between.to_string(),
+    }
+}
+
+/// "Coulomb friction between mold and ground".
+pub(crate) fn effect_at(name: &str, at: &Location) -> String {
+    format!("{} {}", kind(name), place(at))
+}
+
+/// First letter raised and a full stop set, if they are missing.
+pub(crate) fn sentence(text: &str) -> String {
+    let text = text.trim();
+    let mut chars = text.chars();
+    let Some(first) = chars.next() else {
+        return String::new();
+    };
+    let mut out: String = first.to_uppercase().chain(chars).collect();
+    if !out.ends_with(['.', '!', '?', ':', ')']) || (out.ends_with(')') && !out.ends_with(".)")) {
+        out.push('.');
+    }
+    out
+}
+
+/// "friction force 2.10 kN (95 % interval 2.05 to 2.15 kN)", several joined by "and".
+fn parameters(effect: &NamedEffect, unit: &str) -> String {
+    let each: Vec<String> = effect
+        .parameters
+        .iter()
+        .map(|p| {
+            let e = estimate(p, unit);
+            format!(
+                "{} {} (95\u{a0}% interval: {})",
+                e.words, e.value, e.interval
+            )
+        })
+        .collect();
+    list(&each)
+}
+
+/// "a", "a and b", "a, b and c".
+pub(crate) fn list(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [head @ .., last] => format!("{} and {last}", head.join(", ")),
+    }
+}
+
+/// The answer in one plain sentence.
+pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
+    let effects = &diagnosis.verdict.effects;
+    let names: Vec<String> = effects.iter().map(|e| effect_at(&e.kind, &e.at)).collect();
+    match diagnosis.verdict.status {
+        Status::None => "The gap is measurement noise; nothing to add.".to_owned(),
+        Status::Unknown => {
+            "There is structure in the gap that no effect of the catalogue explains; nothing is blamed.".to_owned()
+        }
+        Status::Parameters if names.is_empty() => {
+            "Re-estimating the model's own parameters closes the gap; no effect is missing.".to_owned()
+        }
+        Status::Parameters => format!(
+            "Parameters of the model are off, no effect is missing: {}.",
+            list(&names)
+        ),
+        Status::Effect if names.is_empty() => "An effect is missing from the model.".to_owned(),
+        Status::Effect => {
+            let sure = effects.iter().all(|e| e.probability >= SURE);
+            let how = match (sure, names.len()) {
+                (true, 1) => "The gap is caused by",
+                (false, 1) => "The gap is most likely caused by",
+                (true, _) => "The gap has several causes:",
+                (false, _) => "The gap most likely has several causes:",
+            };
+            format!("{how} {}.", list(&names))
+        }
+    }
+}
+
+/// What stands under the headline: values with intervals and probabilities, or why nothing is
+/// named. One sentence each.
+pub(crate) fn particulars(
+    diagnosis: &Diagnosis,
+    unit_at: &dyn Fn(&Location) -> String,
+) -> Vec<String> {
+    let gap = &diagnosis.gap;
+    let mut out = Vec::new();
+    match diagnosis.verdict.status {
+        Status::None => out.push(format!(
+            "The model as given is off by {}; the noise alone leaves {}.",
+            ratio(gap.nominal),
+            ratio(gap.noise_floor)
+        )),
+        Status::Unknown => out.extend(diagnosis.verdict.description.iter().map(|d| sentence(d))),
+        Status::Parameters | Status::Effect => {}
+    }
+    let alone = diagnosis.verdict.effects.len() == 1;
+    for effect in &diagnosis.verdict.effects {
+        let mut parts = vec![parameters(effect, &unit_at(&effect.at))];
+        parts.push(format!("probability {}", percent(effect.probability)));
+        parts.retain(|p| !p.is_empty());
+        let text = parts.join(", ");
+        // The headline has just named it.
+        out.push(sentence(&if alone {
+            text
+        } else {
+            format!("{}: {text}", effect_at(&effect.kind, &effect.at))
+        }));
+    }
+    out
+}
+
+/// What the third prediction is called in legends.
+pub(crate) fn corrected_name(status: Status) -> &'static str {
+    match status {
+        Status::Effect => "corrected model",
+        Status::Parameters | Status::None | Status::Unknown => "re-estimated model",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_kinds_and_places_read_as_words() {
+        let at = Location::Between(["mold".into(), "ground".into()]);
+        assert_eq!(
+            effect_at("coulomb_friction", &at),
+            "Coulomb friction between mold and ground"
+        );
+        assert_eq!(
+            effect_at("sensor_delay", &Location::Channel("y".into())),
+            "sensor delay in channel y"
+        );
+        assert_eq!(place(&Location::Mass("m".into())), "on mass m");
+    }
+
+    #[test]
+    fn verify_sentences_are_closed_once() {
+        assert_eq!(sentence("it falls by 3.2"), "It falls by 3.2.");
+        assert_eq!(sentence("Done."), "Done.");
+        assert_eq!(sentence("as well (needed is 3)"), "As well (needed is 3).");
+        assert_eq!(sentence("  "), "");
+        assert_eq!(list(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+    }
+}
