@@ -1,0 +1,50 @@
+//! What can go wrong while the paper is reproduced.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why the reproduction failed.
+#[derive(Debug, Error)]
+pub enum ReproduceError {
+    /// The published numbers.
+    #[error(transparent)]
+    Table(#[from] simgap_tables::TableError),
+    /// The mold oscillator.
+    #[error(transparent)]
+    Mold(#[from] simgap_mold::MoldError),
+    /// The unknown force.
+    #[error(transparent)]
+    Alpha(#[from] simgap_alpha::AlphaError),
+    /// The lumped model.
+    #[error(transparent)]
+    Model(#[from] simgap_model::ModelError),
+    /// A record.
+    #[error(transparent)]
+    Record(#[from] simgap_record::RecordError),
+    /// A simulation.
+    #[error(transparent)]
+    Integrate(#[from] simgap_integrate::IntegrateError),
+    /// A spectrum.
+    #[error(transparent)]
+    Signal(#[from] simgap_signal::SignalError),
+    /// A picture.
+    #[error(transparent)]
+    Chart(#[from] simgap_report::chart::ChartError),
+    /// The JSON writer.
+    #[error("cannot write {page} as JSON: {source}")]
+    Json {
+        /// Which page.
+        page: String,
+        /// What the writer says.
+        source: serde_json::Error,
+    },
+    /// A file.
+    #[error("{path}: {source}")]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
