@@ -52,7 +52,9 @@ impl Placed {
                     parameter: parameter.name,
                 }
             })?;
-            if !(parameter.lower..=parameter.upper).contains(&value) {
+            // An open range ends before infinity; NaN is in no range.
+            let inside = (parameter.lower..=parameter.upper).contains(&value);
+            if !(inside && value.is_finite()) {
                 return Err(EffectError::OutOfRange {
                     kind: entry.kind.clone(),
                     parameter: parameter.name,

@@ -1,0 +1,280 @@
+//! What holds for every entry of the catalogue, whatever it is: a new effect is tested here from
+//! the moment it is listed.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use common::{force, model, scale, through};
+use simgap_effects::{Action, Effect, Family, Parameter, Placed, SiteScale, catalogue, sites};
+use simgap_model::{Location, Model};
+
+/// What an action does to the plant or the signal, as numbers that can be compared.
+fn trace(action: &Action, at: &Location) -> Vec<f64> {
+    match action {
+        Action::Model(change) => {
+            let mut model = model();
+            change(&mut model, at);
+            matrix_entries(&model)
+        }
+        Action::Force(law) => {
+            let mut trace = Vec::new();
+            for displacement in [-0.004, -0.001, 0.0, 0.003] {
+                for velocity in [-0.05, -0.002, 0.0, 0.001, 0.04] {
+                    trace.push(force(law.as_ref(), displacement, velocity));
+                    trace.push(law.dry_level(f64::abs(velocity)).unwrap_or(0.0));
+                }
+            }
+            trace
+        }
+        Action::Input(map) | Action::Output(map) => {
+            through(map.as_ref(), &signal(), scale().time_step_s)
+        }
+    }
+}
+
+/// The same without the effect.
+fn untouched(action: &Action) -> Vec<f64> {
+    match action {
+        Action::Model(_) => matrix_entries(&model()),
+        Action::Force(_) => vec![0.0; 40],
+        Action::Input(_) | Action::Output(_) => signal(),
+    }
+}
+
+fn matrix_entries(model: &Model) -> Vec<f64> {
+    let matrices = model.matrices().unwrap();
+    let n = model.dof_count();
+    let mut entries = model.load_vector();
+    for matrix in [
+        &matrices.mass_matrix,
+        &matrices.damping_matrix,
+        &matrices.stiffness_matrix,
+    ] {
+        entries.extend((0..n).flat_map(|i| (0..n).map(move |j| matrix[(i, j)])));
+    }
+    entries
+}
+
+fn signal() -> Vec<f64> {
+    (0..60).map(|i| 0.3 + (0.4 * f64::from(i)).sin()).collect()
+}
+
+fn first_site(effect: &dyn Effect) -> Location {
+    sites(&model(), effect.site())
+        .into_iter()
+        .next()
+        .unwrap_or_else(|| panic!("{}: no site of {:?}", effect.kind(), effect.site()))
+}
+
+/// Neutral where there is a neutral value, else what the first start says.
+fn neutral(effect: &dyn Effect) -> Vec<f64> {
+    let shape = effect.starts(&scale()).swap_remove(0);
+    let parameters = effect.parameters().iter();
+    parameters
+        .zip(shape)
+        .map(|(parameter, start)| parameter.neutral.unwrap_or(start))
+        .collect()
+}
+
+fn snake_case(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_lowercase())
+        && !name.ends_with('_')
+        && !name.contains("__")
+        && name
+            .chars()
+            .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+}
+
+#[test]
+fn verify_kinds_are_unique_and_snake_case() {
+    let mut seen = BTreeSet::new();
+    for effect in catalogue() {
+        let kind = effect.kind();
+        assert!(snake_case(kind), "{kind}");
+        assert!(seen.insert(kind), "{kind} is listed twice");
+        assert_eq!(simgap_effects::find(kind).unwrap().kind(), kind);
+    }
+    assert!(simgap_effects::find("Coulomb_friction").is_none());
+}
+
+#[test]
+fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
+    // Names in files of users: more may be added, none renamed.
+    let promised = [
+        "mass_error",
+        "stiffness_error",
+        "damping_error",
+        "input_gain",
+        "viscous_damping",
+        "linear_stiffness",
+        "coulomb_friction",
+        "stribeck_friction",
+        "quadratic_damping",
+        "cubic_stiffness",
+        "quadratic_stiffness",
+        "constant_force",
+        "sensor_bias",
+        "sensor_delay",
+        "alternating_timing",
+        "alternating_gain",
+    ];
+    for kind in promised {
+        assert!(simgap_effects::find(kind).is_some(), "{kind} is gone");
+    }
+}
+
+/// `N s^2/m^2` as the end of a name: `n_s2_per_m2`.
+fn suffix_of(unit: &str) -> String {
+    unit.to_lowercase()
+        .replace('^', "")
+        .replace('/', "_per_")
+        .replace(' ', "_")
+}
+
+#[test]
+fn verify_parameter_names_carry_their_unit() {
+    assert_eq!(suffix_of("N s^2/m^2"), "n_s2_per_m2");
+    for effect in catalogue() {
+        let mut seen = BTreeSet::new();
+        for Parameter { name, unit, .. } in effect.parameters() {
+            let place = format!("{}: {name} [{unit}]", effect.kind());
+            assert!(snake_case(name), "{place}");
+            assert!(seen.insert(name), "{place} is there twice");
+            // A ratio has no unit, and a sensor's bias has that of its channel.
+            if !["1", "unit of the output"].contains(unit) {
+                let suffix = format!("_{}", suffix_of(unit));
+                assert!(name.ends_with(&suffix), "{place}: needed is {suffix}");
+            }
+        }
+        assert!(!seen.is_empty(), "{} has no parameter", effect.kind());
+    }
+}
+
+#[test]
+fn verify_ranges_hold_the_neutral_value() {
+    for effect in catalogue() {
+        let mut vanishes = false;
+        for parameter in effect.parameters() {
+            let place = format!("{}: {}", effect.kind(), parameter.name);
+            assert!(parameter.lower < parameter.upper, "{place}");
+            if let Some(neutral) = parameter.neutral {
+                let range = parameter.lower..=parameter.upper;
+                assert!(neutral.is_finite() && range.contains(&neutral), "{place}");
+                vanishes = true;
+            }
+        }
+        assert!(vanishes, "{} has no neutral value", effect.kind());
+    }
+}
+
+#[test]
+fn verify_neutral_values_change_nothing() {
+    for effect in catalogue() {
+        let action = effect.action(&neutral(*effect));
+        let at = first_site(*effect);
+        assert_eq!(
+            trace(&action, &at),
+            untouched(&action),
+            "{} at its neutral value",
+            effect.kind()
+        );
+    }
+}
+
+#[test]
+fn verify_starts_are_inside_the_range_and_visible() {
+    let small = SiteScale {
+        displacement_m: 1e-6,
+        velocity_m_per_s: 1e-4,
+        force_n: 1e-2,
+        signal: 1e-6,
+        time_step_s: 1e-5,
+        duration_s: 0.5,
+    };
+    for effect in catalogue() {
+        let kind = effect.kind();
+        for scale in [scale(), small] {
+            let starts = effect.starts(&scale);
+            assert!(!starts.is_empty(), "{kind} has no start");
+            for start in starts {
+                assert_eq!(start.len(), effect.parameters().len(), "{kind}");
+                for (parameter, value) in effect.parameters().iter().zip(&start) {
+                    let inside = (parameter.lower..=parameter.upper).contains(value);
+                    let place = format!("{kind}: {} starts at {value}", parameter.name);
+                    assert!(value.is_finite() && inside, "{place}");
+                    assert_ne!(parameter.neutral, Some(*value), "{place}, which is neutral");
+                }
+                let action = effect.action(&start);
+                assert_ne!(
+                    trace(&action, &first_site(*effect)),
+                    untouched(&action),
+                    "{kind} at {start:?} does nothing"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn verify_families_act_where_they_belong() {
+    for effect in catalogue() {
+        let action = effect.action(&neutral(*effect));
+        let fits = match effect.family() {
+            Family::NominalParameter => matches!(action, Action::Model(_) | Action::Input(_)),
+            Family::Force | Family::Dynamics => {
+                matches!(action, Action::Model(_) | Action::Force(_))
+            }
+            Family::Measurement => matches!(action, Action::Input(_) | Action::Output(_)),
+        };
+        assert!(fits, "{} of {:?}", effect.kind(), effect.family());
+        let place = effect.site().place();
+        let fits = match action {
+            Action::Input(_) => place.starts_with("input"),
+            Action::Output(_) => place.starts_with("channel"),
+            Action::Force(_) | Action::Model(_) => {
+                place.starts_with("between") || place.starts_with("mass")
+            }
+        };
+        assert!(fits, "{} is placed by {place}", effect.kind());
+    }
+}
+
+#[test]
+fn verify_every_kind_has_sites_and_survives_a_model_file() {
+    let model = model();
+    for &effect in catalogue() {
+        let places = sites(&model, effect.site());
+        assert!(!places.is_empty(), "{} has no site", effect.kind());
+        for at in places {
+            for values in effect.starts(&scale()) {
+                let placed = Placed {
+                    effect,
+                    at: at.clone(),
+                    values,
+                };
+                let mut written = model.clone();
+                written.effects.push(placed.to_entry());
+                let read = Model::from_toml(&written.to_toml().unwrap()).unwrap();
+                let back = Placed::from_entry(&read, &read.effects[0]).unwrap();
+                assert_eq!(back.effect.kind(), effect.kind());
+                assert_eq!(back.at, placed.at, "{}", effect.kind());
+                assert_eq!(back.values, placed.values, "{}", effect.kind());
+            }
+        }
+    }
+}
+
+#[test]
+fn verify_texts_can_be_put_into_sentences() {
+    for effect in catalogue() {
+        for text in [effect.summary(), effect.experiment()] {
+            let place = format!("{}: \"{text}\"", effect.kind());
+            assert!(text.len() > 20, "{place} says too little");
+            assert!(!text.ends_with('.'), "{place} ends with a full stop");
+            assert!(!text.starts_with(char::is_uppercase), "{place}");
+        }
+        assert!(effect.equation().contains('='), "{}", effect.kind());
+    }
+}

@@ -1,0 +1,106 @@
+//! A model with a site for every kind, and the actions taken apart.
+#![allow(dead_code)]
+
+use simgap_effects::{Action, Effect, Sampled, SignalMap, SiteScale, find};
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_model::Model;
+
+/// `carriage` has a spring but no damper to the ground, `load` a damper but no spring, and both
+/// lie between the two: so each kind of site is there once at least.
+pub(crate) const MODEL: &str = r#"
+schema = "simgap-model/1"
+name = "two masses"
+
+[[mass]]
+name = "carriage"
+value = 3.0
+
+[[mass]]
+name = "load"
+value = 2.0
+
+[[spring]]
+name = "drive"
+between = ["carriage", "ground"]
+stiffness = 4000.0
+
+[[spring]]
+name = "coupling"
+between = ["carriage", "load"]
+stiffness = 9000.0
+
+[[damper]]
+name = "coupling"
+between = ["load", "carriage"]
+damping = 20.0
+
+[[damper]]
+name = "rail"
+between = ["load", "ground"]
+damping = 7.0
+
+[[input]]
+channel = "u"
+kind = "force"
+at = "carriage"
+
+[[output]]
+channel = "y"
+kind = "displacement"
+at = "load"
+"#;
+
+/// The model of [`MODEL`].
+pub(crate) fn model() -> Model {
+    Model::from_toml(MODEL).unwrap()
+}
+
+/// Typical sizes, each different from the others so that no two can be mistaken.
+pub(crate) fn scale() -> SiteScale {
+    SiteScale {
+        displacement_m: 0.002,
+        velocity_m_per_s: 0.03,
+        force_n: 50.0,
+        signal: 0.7,
+        time_step_s: 0.001,
+        duration_s: 20.0,
+    }
+}
+
+/// An effect that must be in the catalogue.
+pub(crate) fn effect(kind: &str) -> &'static dyn Effect {
+    find(kind).unwrap_or_else(|| panic!("{kind} is not in the catalogue"))
+}
+
+/// The force law of an effect.
+pub(crate) fn law(kind: &str, values: &[f64]) -> Box<dyn ForceLaw> {
+    match effect(kind).action(values) {
+        Action::Force(law) => law,
+        _ => panic!("{kind} is no force law"),
+    }
+}
+
+/// The signal map of an effect.
+pub(crate) fn map(kind: &str, values: &[f64]) -> Box<dyn SignalMap> {
+    match effect(kind).action(values) {
+        Action::Input(map) | Action::Output(map) => map,
+        _ => panic!("{kind} is no signal map"),
+    }
+}
+
+/// The force of a law at a motion.
+pub(crate) fn force(law: &dyn ForceLaw, displacement: f64, velocity: f64) -> f64 {
+    law.force(MemberMotion {
+        displacement,
+        velocity,
+        time_s: 0.0,
+    })
+}
+
+/// A signal sent through a map.
+pub(crate) fn through(map: &dyn SignalMap, values: &[f64], time_step_s: f64) -> Vec<f64> {
+    map.apply(Sampled {
+        values,
+        time_step_s,
+    })
+}

@@ -1,0 +1,135 @@
+//! Where effects can sit, and what is said when one cannot.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use common::{MODEL, model};
+use simgap_effects::{EffectError, Placed, SiteKind, catalogue, sites};
+use simgap_model::{EffectEntry, Location, Model};
+
+fn names(kind: SiteKind) -> Vec<String> {
+    sites(&model(), kind)
+        .iter()
+        .map(Location::to_string)
+        .collect()
+}
+
+#[test]
+fn verify_sites_are_what_the_model_has() {
+    let all = [
+        "between carriage and ground",
+        "between carriage and load",
+        "between load and ground",
+    ];
+    assert_eq!(names(SiteKind::Member), all);
+    assert_eq!(names(SiteKind::Spring), all[..2]);
+    assert_eq!(names(SiteKind::Damper), all[1..]);
+    assert_eq!(names(SiteKind::NoSpring), all[2..]);
+    assert_eq!(names(SiteKind::NoDamper), all[..1]);
+    assert_eq!(names(SiteKind::Mass), ["mass carriage", "mass load"]);
+    assert_eq!(names(SiteKind::Input), ["input u"]);
+    assert_eq!(names(SiteKind::Channel), ["channel y"]);
+}
+
+#[test]
+fn verify_a_free_mass_still_has_a_tie_to_the_ground() {
+    let text = "schema = \"simgap-model/1\"\nname = \"axis\"\n\
+        [[mass]]\nname = \"slide\"\nvalue = 95.0\n\
+        [[output]]\nchannel = \"q\"\nkind = \"displacement\"\nat = \"slide\"\n";
+    let axis = Model::from_toml(text).unwrap();
+    for kind in [SiteKind::Member, SiteKind::NoSpring, SiteKind::NoDamper] {
+        let found = sites(&axis, kind);
+        assert_eq!(found.len(), 1, "{kind:?}");
+        assert_eq!(found[0].to_string(), "between slide and ground");
+    }
+    assert!(sites(&axis, SiteKind::Spring).is_empty());
+    assert!(sites(&axis, SiteKind::Input).is_empty());
+}
+
+/// What is said of one `[[effect]]` at the end of the model file.
+fn said(effect: &str) -> String {
+    let text = format!("{MODEL}\n[[effect]]\n{effect}\n");
+    let model = Model::from_toml(&text).unwrap_or_else(|error| panic!("{effect}: {error}"));
+    match Placed::from_entry(&model, &model.effects[0]) {
+        Ok(_) => panic!("{effect}: accepted"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn regress_messages() {
+    let cases = [
+        // A parameter is missing.
+        "kind = \"coulomb_friction\"\nbetween = [\"load\", \"ground\"]",
+        "kind = \"stribeck_friction\"\nbetween = [\"load\", \"ground\"]\nfriction_force_n = 1.0",
+        // A parameter the effect does not have.
+        "kind = \"coulomb_friction\"\nbetween = [\"load\", \"ground\"]\nfriction_n = 1.0",
+        // Outside the physical range, just and far.
+        "kind = \"coulomb_friction\"\nbetween = [\"load\", \"ground\"]\nfriction_force_n = -1e-9",
+        "kind = \"alternating_gain\"\nchannel = \"y\"\ngain_difference = 1.5",
+        // The wrong kind of place.
+        "kind = \"coulomb_friction\"\nmass = \"load\"\nfriction_force_n = 1.0",
+        "kind = \"sensor_bias\"\ninput = \"u\"\nbias = 1.0",
+        "kind = \"input_gain\"\nchannel = \"y\"\ngain_factor = 1.1",
+        "kind = \"mass_error\"\nbetween = [\"load\", \"ground\"]\nmass_factor = 1.1",
+    ];
+    let messages: Vec<String> = cases.iter().map(|case| said(case)).collect();
+    insta::assert_snapshot!(messages.join("\n"));
+}
+
+#[test]
+fn verify_an_unknown_kind_is_answered_with_the_catalogue() {
+    let message = said("kind = \"gremlin\"\nmass = \"load\"");
+    let start = "[[effect]] \"gremlin\": unknown kind, needed is one of: ";
+    assert!(message.starts_with(start), "{message}");
+    let known: Vec<&str> = message[start.len()..].split(", ").collect();
+    let kinds: Vec<&str> = catalogue().iter().map(|effect| effect.kind()).collect();
+    assert_eq!(known, kinds);
+}
+
+#[test]
+fn verify_values_that_are_no_numbers_are_refused() {
+    let model = model();
+    for &effect in catalogue() {
+        let at = sites(&model, effect.site()).swap_remove(0);
+        let good = effect.starts(&common::scale()).swap_remove(0);
+        for index in 0..good.len() {
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut values = good.clone();
+                values[index] = bad;
+                let entry = Placed {
+                    effect,
+                    at: at.clone(),
+                    values,
+                }
+                .to_entry();
+                let refused = Placed::from_entry(&model, &entry);
+                assert!(
+                    matches!(refused, Err(EffectError::OutOfRange { .. })),
+                    "{}: {bad} was accepted",
+                    effect.kind()
+                );
+            }
+        }
+    }
+}
+
+fn refused(entry: &EffectEntry) -> String {
+    match Placed::from_entry(&model(), entry) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("accepted"),
+    }
+}
+
+#[test]
+fn verify_a_place_that_is_not_in_the_model_is_refused() {
+    let mut entry = Placed {
+        effect: common::effect("coulomb_friction"),
+        at: Location::Between(["load".into(), "ceiling".into()]),
+        values: vec![1.0],
+    }
+    .to_entry();
+    assert!(refused(&entry).contains("ceiling"), "{}", refused(&entry));
+    entry.at = Location::Between(["load".into(), "load".into()]);
+    assert!(refused(&entry).contains("load"), "{}", refused(&entry));
+}
