@@ -20,7 +20,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("none", common::none()),
     ];
     for (name, diagnosis) in all {
-        let page = report_html(&diagnosis, &common::series(), &common::context())?;
+        let page = report_html(
+            &diagnosis,
+            &common::series_of(diagnosis.verdict.status),
+            &common::context(),
+        )?;
         std::fs::write(folder.join(format!("{name}.html")), page)?;
         std::fs::write(
             folder.join(format!("{name}.txt")),

@@ -11,7 +11,12 @@ use simgap_model::Location;
 use simgap_report::page::{ReportContext, report_html};
 
 fn page(diagnosis: &Diagnosis) -> String {
-    report_html(diagnosis, &common::series(), &common::context()).unwrap()
+    report_html(
+        diagnosis,
+        &common::series_of(diagnosis.verdict.status),
+        &common::context(),
+    )
+    .unwrap()
 }
 
 /// Walks the tags of a page: each end tag closes the last open one, attributes are quoted, text

@@ -26,6 +26,7 @@ mod error;
 mod legend;
 mod line;
 mod palette;
+mod plot;
 mod series;
 mod spectrum;
 

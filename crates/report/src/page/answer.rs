@@ -48,6 +48,7 @@ pub(super) fn first_screen(
 
 fn tiles(html: &mut Html, diagnosis: &Diagnosis) {
     let gap = &diagnosis.gap;
+    let effects = &diagnosis.verdict.effects;
     let last = match diagnosis.verdict.status {
         Status::Effect => "with the named effects",
         _ => "final model",
@@ -56,11 +57,15 @@ fn tiles(html: &mut Html, diagnosis: &Diagnosis) {
         html.within("div", &[("class", "tile")], |html| {
             html.element("div", &[("class", "name")], "Gap between model and machine");
             html.within("div", &[("class", "figure steps")], |html| {
-                let steps = [
+                let mut steps = vec![
                     (gap.nominal, "model as given"),
                     (gap.recalibrated, "re-estimated"),
                     (gap.corrected, last),
                 ];
+                // With nothing named the final model is the re-estimated one.
+                if effects.is_empty() && ratio(gap.corrected) == ratio(gap.recalibrated) {
+                    steps.pop();
+                }
                 for (i, (value, name)) in steps.into_iter().enumerate() {
                     if i > 0 {
                         html.element("span", &[("class", "arrow")], "→");

@@ -16,7 +16,7 @@ h2{font-size:20px;margin:30px 0 10px;padding-top:14px;border-top:1px solid var(-
 h3{font-size:16px;margin:22px 0 6px}
 p,ul,dl{margin:8px 0;max-width:76ch}
 ul{padding-left:22px}
-.lead{font-size:17px;max-width:80ch}
+.lead{font-size:17px;max-width:96ch}
 .soft{color:var(--soft)}
 .tiles{display:grid;grid-template-columns:2fr 1fr 1fr;gap:14px;margin:20px 0 8px}
 .tile{background:var(--card);border:1px solid var(--line);border-radius:8px;padding:12px 16px}

@@ -75,6 +75,20 @@ pub fn series() -> Vec<CheckSeries> {
     }]
 }
 
+/// The same record predicted as the verdict says: at once by the model as given if the gap is
+/// noise, never quite if its cause is unknown.
+pub fn series_of(status: Status) -> Vec<CheckSeries> {
+    let mut all = series();
+    for c in all.iter_mut().flat_map(|r| &mut r.channels) {
+        match status {
+            Status::None => c.nominal.clone_from(&c.corrected),
+            Status::Unknown => c.corrected = c.nominal.iter().map(|v| 0.88 * v).collect(),
+            Status::Parameters | Status::Effect => {}
+        }
+    }
+    all
+}
+
 pub fn effect() -> Diagnosis {
     Diagnosis {
         schema: "simgap-diagnosis/1",
@@ -256,8 +270,8 @@ pub fn unknown() -> Diagnosis {
             "it is largest where the mold is near 1.2 mm".into(),
         ],
     };
-    d.gap.corrected = 0.290;
-    d.gap.closed = 0.296;
+    d.gap.corrected = 0.301;
+    d.gap.closed = 0.271;
     d
 }
 
