@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use divan::counter::ItemsCount;
 use faer::Mat;
+use simgap_integrate::exact::{self, ExactPropagator};
 use simgap_integrate::{
     AdaptiveTolerance, Excitation, GeneralizedAlpha, Method, Motion, Newmark, Problem, TimeGrid,
     simulate,
@@ -47,7 +48,6 @@ fn methods() -> Vec<(&'static str, Method)> {
             AdaptiveTolerance::new(relative, relative * 1e-3, relative * 1e-2).unwrap(),
         )
     };
-    // The exact propagation of `exact` joins this list when it takes a `Problem`.
     vec![
         ("park", Method::Park),
         ("newmark_trapezoidal", Method::Newmark(Newmark::TRAPEZOIDAL)),
@@ -84,6 +84,69 @@ fn linear_two_masses(bencher: divan::Bencher<'_, '_>, name: &str) {
         .bench_local(|| simulate(&problem, &grid, method).unwrap());
 }
 
+/// First displacement by exact propagation of the first-order hold.
+fn exact(structure: &StructuralMatrices, force: &[f64]) -> Vec<f64> {
+    let propagator = ExactPropagator::new(structure, STEP_S).unwrap();
+    let excitation = exact::Excitation {
+        dof_force: force,
+        base_displacement: &[],
+        base_velocity: &[],
+        base_count: 0,
+        sample_count: SAMPLES,
+        start_s: 0.0,
+        substeps: 1,
+    };
+    let mut path = Vec::with_capacity(SAMPLES);
+    let still = [0.0; 2];
+    propagator.march(&[], &excitation, &still, &still, &mut |at| {
+        path.push(at.displacement[0])
+    });
+    path
+}
+
+fn interleaved_force() -> Vec<f64> {
+    let force = sampled_force();
+    (0..SAMPLES)
+        .flat_map(|k| [force[(0, k)], force[(1, k)]])
+        .collect()
+}
+
+#[divan::bench(sample_count = 10)]
+fn linear_two_masses_exact(bencher: divan::Bencher<'_, '_>) {
+    let (matrices, force) = (structure(), interleaved_force());
+    bencher
+        .counter(ItemsCount::new(SAMPLES))
+        .bench_local(|| exact(&matrices, &force));
+}
+
+/// The obvious optimum of one linear step: z₁ = Φ z₀ + Γ₀ f₀ + Γ₁ f₁ written out for four states.
+#[divan::bench(sample_count = 10)]
+fn dense_four_state_recurrence(bencher: divan::Bencher<'_, '_>) {
+    let force = interleaved_force();
+    let (phi, gamma) = ([[0.4_f64; 4]; 4], [[0.1_f64; 4]; 4]);
+    bencher.counter(ItemsCount::new(SAMPLES)).bench_local(|| {
+        let mut z = [1e-3_f64; 4];
+        let mut path = Vec::with_capacity(SAMPLES);
+        for k in 1..SAMPLES {
+            let f = [
+                force[2 * k - 2],
+                force[2 * k - 1],
+                force[2 * k],
+                force[2 * k + 1],
+            ];
+            let mut next = [0.0; 4];
+            for i in 0..4 {
+                for j in 0..4 {
+                    next[i] += phi[i][j] * z[j] + gamma[i][j] * f[j];
+                }
+            }
+            z = next;
+            path.push(z[0]);
+        }
+        path
+    });
+}
+
 /// Largest error of the first displacement relative to its largest value.
 fn error(motion: &Motion, reference: &Motion) -> f64 {
     let (mut error, mut size) = (0.0_f64, 0.0_f64);
@@ -112,6 +175,20 @@ fn print_accuracy() {
     println!(
         "{:<24} {:>8} {:>12} {:>12} {:>10}",
         "method", "substeps", "error", "ns/sample", "steps"
+    );
+    let start = Instant::now();
+    let path = exact(&matrices, &interleaved_force());
+    let spent = start.elapsed().as_nanos() as f64 / SAMPLES as f64;
+    let size = path.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+    let worst = (0..SAMPLES)
+        .map(|k| (path[k] - reference.displacement[(0, k)]).abs())
+        .fold(0.0_f64, f64::max);
+    println!(
+        "{:<24} {:>8} {:>12.2e} {spent:>12.1} {:>10}",
+        "exact",
+        1,
+        worst / size,
+        SAMPLES - 1
     );
     for (name, method) in methods() {
         for substeps in [1, 4, 16] {

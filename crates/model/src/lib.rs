@@ -3,6 +3,7 @@
 //! A model is read from text ([`Model::from_toml`]); this crate touches no files. Effects are carried
 //! as written ([`EffectEntry`]); the catalogue one floor up gives them meaning.
 
+mod check;
 mod dense;
 mod error;
 mod file;

@@ -161,10 +161,11 @@ pub fn damped_modes(structure: &StructuralMatrices) -> Result<Vec<DampedMode>, M
     if n == 0 {
         return Ok(vec![]);
     }
-    let state = state_matrix(structure)?;
-    let evd = state.eigen().map_err(|_| ModelError::Eigen {
-        matrix: "damped structure",
-    })?;
+    let evd = balanced(&state_matrix(structure)?)
+        .eigen()
+        .map_err(|_| ModelError::Eigen {
+            matrix: "damped structure",
+        })?;
     let values = evd.S();
     let vectors = evd.U();
     let mut modes: Vec<DampedMode> = (0..2 * n)
@@ -210,6 +211,18 @@ impl DampedMode {
             mode_shape,
         }
     }
+}
+
+/// A in units of displacement and of velocity over ω = ‖M⁻¹K‖^½: the same eigenvalues and shapes of
+/// the displacements, with blocks of one size, which keeps the digits of a stiff structure.
+fn balanced(state: &Mat<f64>) -> Mat<f64> {
+    let n = state.nrows() / 2;
+    let largest = (0..n * n)
+        .map(|k| state[(n + k / n, k % n)].abs())
+        .fold(0.0, f64::max);
+    let omega = if largest > 0.0 { largest.sqrt() } else { 1.0 };
+    let unit = |i: usize| if i < n { 1.0 } else { omega };
+    Mat::from_fn(2 * n, 2 * n, |i, j| state[(i, j)] * unit(j) / unit(i))
 }
 
 /// The state matrix A of [`damped_modes`], 2n × 2n.

@@ -3,6 +3,7 @@
 mod expm;
 mod law;
 mod march;
+mod plant;
 mod propagator;
 
 pub use expm::matrix_exponential;

@@ -1,0 +1,280 @@
+//! The nonlinear elements within one step: equations (3) and (4) of [`super::march`].
+
+use simgap_model::Node;
+
+use super::law::{Element, ForceLaw, MemberMotion};
+use super::propagator::ExactPropagator;
+
+/// Sweeps over several elements before the step is taken as it stands. Contraction per sweep is
+/// the coupling through the masses within one step, far below one.
+const SWEEPS: usize = 8;
+/// Secant iterations on (3); smooth laws need two, a hard stop a few more.
+const SECANT_STEPS: usize = 12;
+/// Relative accuracy of the element forces, far below what the trapezoidal rule leaves.
+const FORCE_TOLERANCE: f64 = 1e-8;
+
+/// How the forces of element j move element i within one step, E and Γ folded.
+struct Compliance {
+    /// C: displacement of i per S of j.
+    displacement: Vec<f64>,
+    /// C: velocity of i per S of j.
+    velocity: Vec<f64>,
+    /// G: displacement of i per D of j.
+    dry_displacement: Vec<f64>,
+    /// G: velocity of i per D of j.
+    dry_velocity: Vec<f64>,
+}
+
+/// The elements on a propagator, and their forces.
+pub(super) struct Plant<'a> {
+    pub(super) propagator: &'a ExactPropagator,
+    pub(super) elements: &'a [Element],
+    compliance: Compliance,
+    dry: Vec<bool>,
+    /// S of each element at the end of the last step.
+    pub(super) smooth: Vec<f64>,
+    /// D of each element over the last step.
+    pub(super) dry_force: Vec<f64>,
+    free_displacement: Vec<f64>,
+    free_velocity: Vec<f64>,
+}
+
+fn project(node: Node, values: &[f64], bases: &[f64]) -> f64 {
+    match node {
+        Node::Ground => 0.0,
+        Node::Dof(i) => values[i],
+        Node::Base(i) => bases[i],
+    }
+}
+
+/// Adds what a force carried by an element does to the degrees of freedom.
+pub(super) fn spread(element: &Element, force: f64, dof_force: &mut [f64]) {
+    if let Node::Dof(i) = element.a {
+        dof_force[i] -= force;
+    }
+    if let Node::Dof(i) = element.b {
+        dof_force[i] += force;
+    }
+}
+
+impl<'a> Plant<'a> {
+    pub(super) fn new(propagator: &'a ExactPropagator, elements: &'a [Element]) -> Plant<'a> {
+        let (n, m) = (propagator.dof_count, elements.len());
+        let sum: Vec<f64> = propagator
+            .gamma0
+            .iter()
+            .zip(&propagator.gamma1)
+            .map(|(a, b)| a + b)
+            .collect();
+        let fold = |gamma: &[f64], offset: usize| -> Vec<f64> {
+            let mut folded = vec![0.0; m * m];
+            let mut column = vec![0.0; n];
+            for j in 0..m {
+                column.fill(0.0);
+                spread(&elements[j], 1.0, &mut column);
+                let moved: Vec<f64> = (0..n)
+                    .map(|i| {
+                        (0..n)
+                            .map(|k| gamma[(offset + i) * n + k] * column[k])
+                            .sum()
+                    })
+                    .collect();
+                for i in 0..m {
+                    let at = |node| {
+                        if let Node::Dof(k) = node {
+                            moved[k]
+                        } else {
+                            0.0
+                        }
+                    };
+                    // Pushed by −E: a positive force moves its own element back.
+                    folded[i * m + j] = -(at(elements[i].a) - at(elements[i].b));
+                }
+            }
+            folded
+        };
+        Plant {
+            compliance: Compliance {
+                displacement: fold(&propagator.gamma1, 0),
+                velocity: fold(&propagator.gamma1, n),
+                dry_displacement: fold(&sum, 0),
+                dry_velocity: fold(&sum, n),
+            },
+            propagator,
+            elements,
+            dry: elements
+                .iter()
+                .map(|e| e.law.dry_level(0.0).is_some())
+                .collect(),
+            smooth: vec![0.0; m],
+            dry_force: vec![0.0; m],
+            free_displacement: vec![0.0; m],
+            free_velocity: vec![0.0; m],
+        }
+    }
+
+    /// Forces at the first sample, where the motion is given.
+    pub(super) fn begin(
+        &mut self,
+        n: usize,
+        state: &[f64],
+        force: &[f64],
+        base: &[f64],
+        time_s: f64,
+    ) {
+        let bases = base.len() / 2;
+        for (i, element) in self.elements.iter().enumerate() {
+            let across = |values: &[f64], base: &[f64]| {
+                project(element.a, values, base) - project(element.b, values, base)
+            };
+            let motion = MemberMotion {
+                displacement: across(&state[..n], &base[..bases]),
+                velocity: across(&state[n..2 * n], &base[bases..]),
+                time_s,
+            };
+            self.smooth[i] = element.law.force(motion);
+            let level = element.law.dry_level(motion.velocity.abs()).unwrap_or(0.0);
+            // At rest the dry force balances what it can of the excitation across it.
+            let at_rest = across(force, &vec![0.0; bases]).clamp(-level, level);
+            self.dry_force[i] = if motion.velocity == 0.0 {
+                at_rest
+            } else {
+                level * motion.velocity.signum()
+            };
+        }
+    }
+
+    /// Solves (3) and (4) for the forces at the end of the step.
+    #[inline(always)]
+    pub(super) fn solve(&mut self, free: &[f64], base: &[f64], time_s: f64) {
+        let n = free.len() / 2;
+        let bases = base.len() / 2;
+        let m = self.elements.len();
+        for (i, element) in self.elements.iter().enumerate() {
+            self.free_displacement[i] = project(element.a, &free[..n], &base[..bases])
+                - project(element.b, &free[..n], &base[..bases]);
+            self.free_velocity[i] = project(element.a, &free[n..], &base[bases..])
+                - project(element.b, &free[n..], &base[bases..]);
+        }
+        let sweeps = if m == 1 && !self.dry[0] { 1 } else { SWEEPS };
+        for _ in 0..sweeps {
+            let mut settled = true;
+            for i in 0..m {
+                settled &= self.solve_element(i, time_s);
+            }
+            if settled {
+                break;
+            }
+        }
+    }
+
+    /// Updates S and D of one element with the others held; true if they stayed where they were.
+    #[inline(always)]
+    fn solve_element(&mut self, i: usize, time_s: f64) -> bool {
+        let m = self.elements.len();
+        let law = &self.elements[i].law;
+        let c = &self.compliance;
+        let (mut displacement, mut velocity) = (self.free_displacement[i], self.free_velocity[i]);
+        for j in (0..m).filter(|&j| j != i) {
+            let k = i * m + j;
+            displacement -=
+                c.displacement[k] * self.smooth[j] + c.dry_displacement[k] * self.dry_force[j];
+            velocity -= c.velocity[k] * self.smooth[j] + c.dry_velocity[k] * self.dry_force[j];
+        }
+        let own = i * m + i;
+        let (old_smooth, old_dry) = (self.smooth[i], self.dry_force[i]);
+        if self.dry[i] {
+            let free_velocity = velocity - c.velocity[own] * self.smooth[i];
+            self.dry_force[i] = dry_force(law.as_ref(), free_velocity, c.dry_velocity[own]);
+            displacement -= c.dry_displacement[own] * self.dry_force[i];
+            velocity -= c.dry_velocity[own] * self.dry_force[i];
+        }
+        self.smooth[i] = smooth_force(old_smooth, |s| {
+            law.force(MemberMotion {
+                displacement: displacement - c.displacement[own] * s,
+                velocity: velocity - c.velocity[own] * s,
+                time_s,
+            })
+        });
+        let size = self.smooth[i].abs() + self.dry_force[i].abs();
+        let change = (self.smooth[i] - old_smooth).abs() + (self.dry_force[i] - old_dry).abs();
+        change <= FORCE_TOLERANCE * size
+    }
+
+    /// Adds what S₁ and D₁ do to the free state, (1).
+    #[inline(always)]
+    pub(super) fn push(&self, n: usize, next: &mut [f64], net: &mut [f64]) {
+        let gamma0 = &self.propagator.gamma0[..2 * n * n];
+        let gamma1 = &self.propagator.gamma1[..2 * n * n];
+        let (next, net) = (&mut next[..2 * n], &mut net[..n]);
+        net.fill(0.0);
+        for (element, &s) in self.elements.iter().zip(&self.smooth) {
+            spread(element, s, net);
+        }
+        for i in 0..2 * n {
+            for j in 0..n {
+                next[i] += gamma1[i * n + j] * net[j];
+            }
+        }
+        if self.dry.iter().any(|&dry| dry) {
+            net.fill(0.0);
+            for (element, &d) in self.elements.iter().zip(&self.dry_force) {
+                spread(element, d, net);
+            }
+            for i in 0..2 * n {
+                for j in 0..n {
+                    next[i] += (gamma0[i * n + j] + gamma1[i * n + j]) * net[j];
+                }
+            }
+        }
+    }
+}
+
+/// (4): the dry force at the end of a step that would end with `velocity` without it, when a unit
+/// of it changes the velocity by −`compliance`.
+#[inline(always)]
+fn dry_force(law: &dyn ForceLaw, velocity: f64, compliance: f64) -> f64 {
+    let level = |speed: f64| law.dry_level(speed).unwrap_or(0.0).max(0.0);
+    if compliance > 0.0 && velocity.abs() <= compliance * level(0.0) {
+        return velocity / compliance;
+    }
+    // Sliding: |v| = |v*| − G level(|v|), by fixed-point iteration (levels change little in a step).
+    let mut speed = velocity.abs();
+    for _ in 0..4 {
+        speed = (velocity.abs() - compliance * level(speed)).max(0.0);
+    }
+    level(speed)
+        * if velocity == 0.0 {
+            0.0
+        } else {
+            velocity.signum()
+        }
+}
+
+/// (3): solves S = φ(S) from a first guess by the secant method.
+///
+/// With r₀ and r₁ the residuals of two iterates, the secant step leaves about r₁²/r₀: two
+/// evaluations are enough for a law that is smooth on the scale of a step.
+#[inline(always)]
+fn smooth_force(guess: f64, law: impl Fn(f64) -> f64) -> f64 {
+    let mut s0 = guess;
+    let mut s1 = law(s0);
+    let mut residual0 = s1 - s0;
+    for _ in 0..SECANT_STEPS {
+        if residual0.abs() <= FORCE_TOLERANCE * s1.abs() {
+            return s1;
+        }
+        let residual1 = law(s1) - s1;
+        let slope = residual1 - residual0;
+        if slope == 0.0 || !slope.is_finite() {
+            return s1 + residual1;
+        }
+        let s2 = s1 - residual1 * (s1 - s0) / slope;
+        let left = residual1 * residual1;
+        if left <= FORCE_TOLERANCE * (s2 * residual0).abs() {
+            return s2;
+        }
+        (s0, residual0, s1) = (s1, residual1, s2);
+    }
+    s1
+}

@@ -1,0 +1,233 @@
+//! The checks that make a list of parts a model.
+
+use std::collections::BTreeSet;
+
+use crate::{GROUND, InputKind, Location, Model, ModelError, OutputKind};
+
+impl Model {
+    /// Checks that the parts make a model; [`Model::from_toml`] has done so.
+    ///
+    /// # Errors
+    /// The first fault found, with its place.
+    pub fn check(&self) -> Result<(), ModelError> {
+        self.check_masses()?;
+        self.check_members()?;
+        self.check_inputs()?;
+        self.check_outputs()?;
+        self.check_forces()?;
+        for (i, effect) in self.effects.iter().enumerate() {
+            let place = format!("[[effect]] {} \"{}\"", i + 1, effect.kind);
+            self.check_location(&effect.at, &place)?;
+            for (name, &value) in &effect.parameters {
+                finite(&place, name, value)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_masses(&self) -> Result<(), ModelError> {
+        unique(
+            "mass",
+            self.masses
+                .iter()
+                .map(|m| m.name.as_str())
+                .chain(self.base_nodes()),
+        )?;
+        for mass in &self.masses {
+            let place = item("mass", &mass.name);
+            node_name(&place, &mass.name)?;
+            if !(mass.value.is_finite() && mass.value > 0.0) {
+                return Err(ModelError::Value {
+                    place,
+                    quantity: "value".into(),
+                    found: mass.value,
+                    needed: "a positive mass",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_members(&self) -> Result<(), ModelError> {
+        unique("spring", self.springs.iter().map(|s| s.name.as_str()))?;
+        unique("damper", self.dampers.iter().map(|d| d.name.as_str()))?;
+        for spring in &self.springs {
+            let place = item("spring", &spring.name);
+            self.check_pair(&spring.between, &place)?;
+            finite(&place, "stiffness", spring.stiffness)?;
+        }
+        for damper in &self.dampers {
+            let place = item("damper", &damper.name);
+            self.check_pair(&damper.between, &place)?;
+            finite(&place, "damping", damper.damping)?;
+        }
+        Ok(())
+    }
+
+    fn check_pair(&self, pair: &[String; 2], place: &str) -> Result<(), ModelError> {
+        self.resolve_pair(pair, || place.to_string())?;
+        if pair[0] == pair[1] {
+            return Err(ModelError::Shape {
+                place: place.into(),
+                found: format!("both ends are \"{}\"", pair[0]),
+                needed: "two different nodes".into(),
+            });
+        }
+        Ok(())
+    }
+
+    fn check_inputs(&self) -> Result<(), ModelError> {
+        unique("input", self.inputs.iter().map(|i| i.channel.as_str()))?;
+        for input in &self.inputs {
+            let place = item("input", &input.channel);
+            check_gain(&place, input.gain)?;
+            match input.kind {
+                InputKind::Force => self.check_mass(&input.at, &place)?,
+                InputKind::Displacement => node_name(&place, &input.at)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn check_outputs(&self) -> Result<(), ModelError> {
+        if self.outputs.is_empty() {
+            return Err(ModelError::Shape {
+                place: format!("model \"{}\"", self.name),
+                found: "no [[output]]".into(),
+                needed: "at least one output to compare".into(),
+            });
+        }
+        unique("output", self.outputs.iter().map(|o| o.channel.as_str()))?;
+        for output in &self.outputs {
+            let place = item("output", &output.channel);
+            check_gain(&place, output.gain)?;
+            let force = output.kind == OutputKind::Force;
+            match (&output.at, &output.between) {
+                (Some(at), None) if !force => {
+                    self.resolve_pair(&[at.clone(), at.clone()], || place.clone())?;
+                }
+                (None, Some(pair)) if force => self.check_pair(pair, &place)?,
+                _ => {
+                    return Err(ModelError::Shape {
+                        place,
+                        found: "a place that does not go with the kind".into(),
+                        needed: "at = \"node\" for a motion, between = [\"a\", \"b\"] for a force"
+                            .into(),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_forces(&self) -> Result<(), ModelError> {
+        for load in &self.loads {
+            let place = item("load", &load.at);
+            self.check_mass(&load.at, &place)?;
+            finite(&place, "value", load.value)?;
+        }
+        for pendulum in &self.pendulums {
+            let place = item("pendulum", &pendulum.at);
+            self.check_mass(&pendulum.at, &place)?;
+            finite(&place, "value", pendulum.value)?;
+        }
+        Ok(())
+    }
+
+    fn check_mass(&self, name: &str, place: &str) -> Result<(), ModelError> {
+        if self.masses.iter().any(|mass| mass.name == name) {
+            return Ok(());
+        }
+        Err(ModelError::UnknownNode {
+            place: place.into(),
+            found: name.into(),
+            known: self
+                .masses
+                .iter()
+                .map(|mass| mass.name.as_str())
+                .collect::<Vec<_>>()
+                .join(", "),
+        })
+    }
+
+    /// Checks that a location names what the model has.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownNode`] or [`ModelError::UnknownChannel`], with `place` in front.
+    pub fn check_location(&self, at: &Location, place: &str) -> Result<(), ModelError> {
+        let channel = |found: &String, known: Vec<&str>| {
+            if known.contains(&found.as_str()) {
+                return Ok(());
+            }
+            Err(ModelError::UnknownChannel {
+                place: place.into(),
+                found: found.clone(),
+                known: known.join(", "),
+            })
+        };
+        match at {
+            Location::Between(pair) => self.check_pair(pair, place),
+            Location::Mass(mass) => self.check_mass(mass, place),
+            Location::Input(name) => channel(
+                name,
+                self.inputs.iter().map(|i| i.channel.as_str()).collect(),
+            ),
+            Location::Channel(name) => channel(
+                name,
+                self.outputs.iter().map(|o| o.channel.as_str()).collect(),
+            ),
+        }
+    }
+}
+
+/// How an error names an item: `[[table]] "name"`.
+pub(crate) fn item(table: &str, name: &str) -> String {
+    format!("[[{table}]] \"{name}\"")
+}
+
+fn unique<'a>(table: &str, names: impl Iterator<Item = &'a str>) -> Result<(), ModelError> {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        if !seen.insert(name) {
+            return Err(ModelError::DuplicateName {
+                place: item(table, name),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn node_name(place: &str, name: &str) -> Result<(), ModelError> {
+    if name == GROUND || name.trim().is_empty() {
+        return Err(ModelError::BadName {
+            place: place.into(),
+            found: name.into(),
+            needed: "\"ground\" is the node that never moves, and a name is not empty",
+        });
+    }
+    Ok(())
+}
+
+fn finite(place: &str, quantity: &str, value: f64) -> Result<(), ModelError> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(ModelError::Value {
+        place: place.into(),
+        quantity: quantity.into(),
+        found: value,
+        needed: "a finite number",
+    })
+}
+
+fn check_gain(place: &str, gain: Option<f64>) -> Result<(), ModelError> {
+    match gain {
+        Some(value) if !value.is_finite() || value == 0.0 => Err(ModelError::Value {
+            place: place.into(),
+            quantity: "gain".into(),
+            found: value,
+            needed: "a finite number that is not zero",
+        }),
+        _ => Ok(()),
+    }
+}
