@@ -17,6 +17,7 @@
 
 mod bench;
 mod case;
+mod draft;
 mod equivalent;
 mod error;
 mod excitation;
@@ -33,10 +34,11 @@ mod totals;
 
 pub use bench::OVERSAMPLING;
 pub use case::{Case, Status, Truth};
+pub use draft::{GAP_OVER_NOISE, LARGEST_GAP, SMALLEST_GAP};
 pub use equivalent::{Equivalent, equivalents};
 pub use error::BlindError;
 pub use foreign::foreign_effects;
-pub use generate::{GAP_OVER_NOISE, LARGEST_GAP, SMALLEST_GAP, generate};
+pub use generate::generate;
 pub use recipe::{Recipe, schedule};
 pub use score::{Answer, Named, Outcome, Score, Verdict, score};
 pub use table::{Style, render};
