@@ -18,6 +18,7 @@
 //!
 //! References: \[Moreau1988\]; \[Hochbruck2010\], section 2.
 
+use super::kernel::{Dense, Fixed, Kernel};
 use super::law::Element;
 use super::plant::{Plant, spread};
 use super::propagator::ExactPropagator;
@@ -89,112 +90,156 @@ impl ExactPropagator {
         let mut state: Vec<f64> = displacement.iter().chain(velocity).copied().collect();
         state.resize(2 * self.dof_count, 0.0);
         let mut plant = Plant::new(self, elements);
-        // A count known to the compiler unrolls the small matrix products.
         match self.dof_count {
-            0 => plant.run(0, excitation, &mut state, observe),
-            1 => plant.run(1, excitation, &mut state, observe),
-            2 => plant.run(2, excitation, &mut state, observe),
-            3 => plant.run(3, excitation, &mut state, observe),
-            4 => plant.run(4, excitation, &mut state, observe),
-            n => plant.run(n, excitation, &mut state, observe),
+            1 => plant.run(&Fixed::<1>::new(self), excitation, &mut state, observe),
+            2 => plant.run(&Fixed::<2>::new(self), excitation, &mut state, observe),
+            3 => plant.run(&Fixed::<3>::new(self), excitation, &mut state, observe),
+            4 => plant.run(&Fixed::<4>::new(self), excitation, &mut state, observe),
+            _ => plant.run(&Dense(self), excitation, &mut state, observe),
         }
     }
 }
 
 impl Plant<'_> {
-    #[inline(always)]
     fn run(
         &mut self,
-        n: usize,
+        kernel: &impl Kernel,
         excitation: &Excitation<'_>,
         state: &mut [f64],
         observe: &mut dyn FnMut(&Snapshot<'_>),
     ) {
-        let m = self.elements.len();
+        let (n, m) = (self.propagator.dof_count, self.elements.len());
         let bases = excitation.base_count;
-        let substeps = excitation.substeps.max(1);
-        let h = self.propagator.time_step_s;
-        // Slices of a length the compiler knows leave no bounds to check in the products.
-        let propagator = self.propagator;
-        let phi = &propagator.phi[..4 * n * n];
-        let gamma0 = &propagator.gamma0[..2 * n * n];
-        let gamma1 = &propagator.gamma1[..2 * n * n];
-        let state = &mut state[..2 * n];
-        let (mut before, mut after, mut net) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        let (before, after, net) = (&mut before[..n], &mut after[..n], &mut net[..n]);
-        let mut next = vec![0.0; 2 * n];
-        let next = &mut next[..2 * n];
-        let mut base = vec![0.0; 2 * bases];
+        let mut scratch = Scratch::new(n, bases);
         let mut carried = vec![0.0; m];
-
-        for sample in 0..excitation.sample_count {
-            let (Some(force), Some(base_x), Some(base_v)) = (
-                excitation.dof_force.get(sample * n..(sample + 1) * n),
-                excitation
-                    .base_displacement
-                    .get(sample * bases..(sample + 1) * bases),
-                excitation
-                    .base_velocity
-                    .get(sample * bases..(sample + 1) * bases),
-            ) else {
+        let mut last: Option<Sample<'_>> = None;
+        for index in 0..excitation.sample_count {
+            let Some(sample) = excitation.sample(index, n) else {
                 return;
             };
-            if sample > 0 {
-                let from = (sample - 1) * n;
-                let base_from = (sample - 1) * bases;
-                for sub in 1..=substeps {
-                    // Fractions of the sample interval at the two ends of this step.
-                    let start = (sub - 1) as f64 / substeps as f64;
-                    let end = sub as f64 / substeps as f64;
-                    for i in 0..n {
-                        let (f0, f1) = (excitation.dof_force[from + i], force[i]);
-                        before[i] = f0 + start * (f1 - f0);
-                        after[i] = f0 + end * (f1 - f0);
-                    }
-                    for (element, &s) in self.elements.iter().zip(&self.smooth) {
-                        spread(element, s, before);
-                    }
-                    // (1) without S₁ and D₁
-                    for i in 0..2 * n {
-                        let mut sum = 0.0;
-                        for j in 0..2 * n {
-                            sum += phi[i * 2 * n + j] * state[j];
-                        }
-                        for j in 0..n {
-                            sum += gamma0[i * n + j] * before[j] + gamma1[i * n + j] * after[j];
-                        }
-                        next[i] = sum;
-                    }
-                    if m > 0 {
-                        for i in 0..bases {
-                            let x0 = excitation.base_displacement[base_from + i];
-                            let v0 = excitation.base_velocity[base_from + i];
-                            base[i] = x0 + end * (base_x[i] - x0);
-                            base[bases + i] = v0 + end * (base_v[i] - v0);
-                        }
-                        let steps = ((sample - 1) * substeps + sub) as f64;
-                        self.solve(next, &base, excitation.start_s + steps * h);
-                        self.push(n, next, net);
-                    }
-                    state.copy_from_slice(next);
-                }
+            if let Some(last) = last {
+                self.advance(
+                    kernel,
+                    excitation,
+                    index,
+                    [&last, &sample],
+                    state,
+                    &mut scratch,
+                );
             } else if m > 0 {
-                base[..bases].copy_from_slice(base_x);
-                base[bases..].copy_from_slice(base_v);
-                self.begin(n, state, force, &base, excitation.start_s);
+                scratch.base[..bases].copy_from_slice(sample.base_displacement);
+                scratch.base[bases..].copy_from_slice(sample.base_velocity);
+                self.begin(n, state, sample.force, &scratch.base, excitation.start_s);
             }
-            net.copy_from_slice(force);
-            for i in 0..m {
-                carried[i] = self.smooth[i] + self.dry_force[i];
-                spread(&self.elements[i], carried[i], net);
-            }
+            let force = if m > 0 {
+                scratch.net.copy_from_slice(sample.force);
+                for (i, element) in self.elements.iter().enumerate() {
+                    carried[i] = self.smooth[i] + self.dry_force[i];
+                    spread(element, carried[i], &mut scratch.net);
+                }
+                scratch.net.as_slice()
+            } else {
+                sample.force
+            };
+            let (displacement, velocity) = state.split_at(n);
             observe(&Snapshot {
-                sample,
-                displacement: &state[..n],
-                velocity: &state[n..],
-                dof_force: net,
+                sample: index,
+                displacement,
+                velocity,
+                dof_force: force,
                 element_force: &carried,
             });
+            last = Some(sample);
+        }
+    }
+
+    /// From one sample to the next, in the steps of the excitation.
+    #[inline(always)]
+    fn advance(
+        &mut self,
+        kernel: &impl Kernel,
+        excitation: &Excitation<'_>,
+        index: usize,
+        [from, to]: [&Sample<'_>; 2],
+        state: &mut [f64],
+        scratch: &mut Scratch,
+    ) {
+        if self.elements.is_empty() && excitation.substeps <= 1 {
+            kernel.step(state, from.force, to.force, &mut scratch.next);
+            state.copy_from_slice(&scratch.next);
+            return;
+        }
+        let substeps = excitation.substeps.max(1);
+        let share = 1.0 / substeps as f64;
+        for sub in 0..substeps {
+            // Fractions of the sample interval at the two ends of this step.
+            let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
+            interpolate(from.force, to.force, start, &mut scratch.before);
+            interpolate(from.force, to.force, end, &mut scratch.after);
+            for (element, &s) in self.elements.iter().zip(&self.smooth) {
+                spread(element, s, &mut scratch.before);
+            }
+            // (1) without S₁ and D₁
+            kernel.step(state, &scratch.before, &scratch.after, &mut scratch.next);
+            if !self.elements.is_empty() {
+                let (x, v) = scratch.base.split_at_mut(excitation.base_count);
+                interpolate(from.base_displacement, to.base_displacement, end, x);
+                interpolate(from.base_velocity, to.base_velocity, end, v);
+                let steps = ((index - 1) * substeps + sub + 1) as f64;
+                let time_s = excitation.start_s + steps * self.propagator.time_step_s;
+                self.solve(&scratch.next, &scratch.base, time_s);
+                self.push(kernel, &mut scratch.next, &mut scratch.net);
+            }
+            state.copy_from_slice(&scratch.next);
+        }
+    }
+}
+
+#[inline(always)]
+fn interpolate(from: &[f64], to: &[f64], share: f64, out: &mut [f64]) {
+    for ((out, a), b) in out.iter_mut().zip(from).zip(to) {
+        *out = a + share * (b - a);
+    }
+}
+
+/// The excitation at one sample.
+struct Sample<'a> {
+    force: &'a [f64],
+    base_displacement: &'a [f64],
+    base_velocity: &'a [f64],
+}
+
+impl<'a> Excitation<'a> {
+    fn sample(&self, index: usize, dof_count: usize) -> Option<Sample<'a>> {
+        let bases = index * self.base_count..(index + 1) * self.base_count;
+        Some(Sample {
+            force: self
+                .dof_force
+                .get(index * dof_count..(index + 1) * dof_count)?,
+            base_displacement: self.base_displacement.get(bases.clone())?,
+            base_velocity: self.base_velocity.get(bases)?,
+        })
+    }
+}
+
+/// Room for one step.
+struct Scratch {
+    before: Vec<f64>,
+    after: Vec<f64>,
+    next: Vec<f64>,
+    net: Vec<f64>,
+    /// Displacements, then velocities of the bases.
+    base: Vec<f64>,
+}
+
+impl Scratch {
+    fn new(n: usize, bases: usize) -> Scratch {
+        Scratch {
+            before: vec![0.0; n],
+            after: vec![0.0; n],
+            next: vec![0.0; 2 * n],
+            net: vec![0.0; n],
+            base: vec![0.0; 2 * bases],
         }
     }
 }

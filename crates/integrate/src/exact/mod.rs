@@ -1,6 +1,7 @@
 //! Exact first-order-hold propagation of the linear part with nonlinear forces on top.
 
 mod expm;
+mod kernel;
 mod law;
 mod march;
 mod plant;

@@ -2,6 +2,7 @@
 
 use simgap_model::Node;
 
+use super::kernel::Kernel;
 use super::law::{Element, ForceLaw, MemberMotion};
 use super::propagator::ExactPropagator;
 
@@ -31,6 +32,7 @@ pub(super) struct Plant<'a> {
     pub(super) elements: &'a [Element],
     compliance: Compliance,
     dry: Vec<bool>,
+    any_dry: bool,
     /// S of each element at the end of the last step.
     pub(super) smooth: Vec<f64>,
     /// D of each element over the last step.
@@ -102,6 +104,7 @@ impl<'a> Plant<'a> {
             },
             propagator,
             elements,
+            any_dry: elements.iter().any(|e| e.law.dry_level(0.0).is_some()),
             dry: elements
                 .iter()
                 .map(|e| e.law.dry_level(0.0).is_some())
@@ -203,29 +206,18 @@ impl<'a> Plant<'a> {
 
     /// Adds what S₁ and D₁ do to the free state, (1).
     #[inline(always)]
-    pub(super) fn push(&self, n: usize, next: &mut [f64], net: &mut [f64]) {
-        let gamma0 = &self.propagator.gamma0[..2 * n * n];
-        let gamma1 = &self.propagator.gamma1[..2 * n * n];
-        let (next, net) = (&mut next[..2 * n], &mut net[..n]);
+    pub(super) fn push(&self, kernel: &impl Kernel, next: &mut [f64], net: &mut [f64]) {
         net.fill(0.0);
         for (element, &s) in self.elements.iter().zip(&self.smooth) {
             spread(element, s, net);
         }
-        for i in 0..2 * n {
-            for j in 0..n {
-                next[i] += gamma1[i * n + j] * net[j];
-            }
-        }
-        if self.dry.iter().any(|&dry| dry) {
+        kernel.push_end(net, next);
+        if self.any_dry {
             net.fill(0.0);
             for (element, &d) in self.elements.iter().zip(&self.dry_force) {
                 spread(element, d, net);
             }
-            for i in 0..2 * n {
-                for j in 0..n {
-                    next[i] += (gamma0[i * n + j] + gamma1[i * n + j]) * net[j];
-                }
-            }
+            kernel.push_held(net, next);
         }
     }
 }
