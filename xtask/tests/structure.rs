@@ -1,0 +1,95 @@
+//! The shape of the workspace: invariants, most of them about what is absent. Each is a rule of
+//! `xtask::tidy`, where a test of its own shows that it can fail.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::path::Path;
+
+use xtask::tidy::{self, Rule, Workspace};
+
+fn assert_clean(rule: Rule) {
+    let workspace = Workspace::load().unwrap_or_else(|error| panic!("{error}"));
+    // Rules on nothing would pass.
+    assert!(workspace.packages.len() >= 15 && workspace.sources.len() >= 100);
+    assert!(!workspace.kinds.is_empty());
+    let findings: Vec<String> = rule(&workspace).iter().map(ToString::to_string).collect();
+    assert!(findings.is_empty(), "\n{}", findings.join("\n"));
+}
+
+#[test]
+fn verify_every_crate_declares_a_floor() {
+    assert_clean(tidy::every_crate_declares_a_floor);
+}
+
+#[test]
+fn verify_dependencies_point_down() {
+    assert_clean(tidy::dependencies_point_down);
+}
+
+#[test]
+fn verify_packages_are_named_after_their_folders() {
+    assert_clean(tidy::packages_are_named_after_their_folders);
+}
+
+#[test]
+fn verify_the_diagnosis_cannot_reach_the_cases() {
+    assert_clean(tidy::diagnosis_cannot_reach_the_cases);
+}
+
+#[test]
+fn verify_every_crate_takes_the_lints_of_the_workspace() {
+    assert_clean(tidy::every_crate_takes_the_lints_of_the_workspace);
+}
+
+#[test]
+fn verify_libraries_are_silent_and_still() {
+    assert_clean(tidy::libraries_are_silent_and_still);
+}
+
+#[test]
+fn verify_who_touches_files() {
+    assert_clean(tidy::who_may_touch_files);
+}
+
+#[test]
+fn verify_integrators_know_no_effect() {
+    assert_clean(tidy::integrators_know_no_effect);
+}
+
+#[test]
+fn verify_published_numbers_are_only_embedded() {
+    assert_clean(tidy::published_numbers_are_only_embedded);
+}
+
+#[test]
+fn verify_nothing_is_unsafe() {
+    assert_clean(tidy::nothing_is_unsafe);
+}
+
+#[test]
+fn verify_files_are_short() {
+    assert_clean(tidy::files_are_short);
+}
+
+#[test]
+fn verify_references_resolve() {
+    assert_clean(tidy::every_reference_resolves);
+    assert_clean(tidy::every_source_listed_is_cited);
+}
+
+#[test]
+fn verify_every_rule_is_run_by_the_command() {
+    // `cargo xtask tidy` runs RULES; each line above is one of them.
+    assert_eq!(tidy::RULES.len(), 13);
+}
+
+#[test]
+fn verify_the_page_on_effects_is_current() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("..")
+        .join(xtask::effects_docs::PAGE);
+    let committed = std::fs::read_to_string(path).unwrap();
+    assert!(
+        committed == xtask::effects_docs::page(),
+        "docs/effects.md is not what the catalogue says: run `cargo xtask effects-docs`"
+    );
+}
