@@ -1,6 +1,5 @@
 //! Project tasks, one module per subcommand.
 
+pub mod blind_check;
 pub mod demo_records;
-pub mod effects_docs;
 pub mod reproduce;
-pub mod tidy;

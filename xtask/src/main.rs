@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use xtask::{demo_records, effects_docs, reproduce, tidy};
+use xtask::{blind_check, demo_records, reproduce};
 
 #[derive(Parser)]
 #[command(name = "xtask", about = "Project tasks")]
@@ -18,10 +18,8 @@ enum Task {
     ReproducePaper(reproduce::Args),
     /// Make the embedded records of `simgap demo`
     DemoRecords(demo_records::DemoArgs),
-    /// Write docs/effects.md from the catalogue of effects
-    EffectsDocs(effects_docs::Args),
-    /// Check the rules that keep the workspace in shape
-    Tidy,
+    /// Diagnose generated cases whose effect is withheld, and score the answers
+    BlindCheck(blind_check::Args),
 }
 
 #[allow(clippy::print_stdout, clippy::print_stderr)]
@@ -29,8 +27,7 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().task {
         Task::ReproducePaper(args) => reproduce::run(&args),
         Task::DemoRecords(args) => return demo(&args),
-        Task::EffectsDocs(args) => return finish(effects_docs::run(&args)),
-        Task::Tidy => return finish(tidy::run()),
+        Task::BlindCheck(args) => return blind_check::main(&args),
     };
     match outcome {
         Ok(outcome) => {
@@ -67,25 +64,6 @@ fn demo(args: &demo_records::DemoArgs) -> ExitCode {
                 ExitCode::FAILURE
             } else {
                 ExitCode::SUCCESS
-            }
-        }
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Prints what is wrong; nothing wrong is success.
-#[allow(clippy::print_stdout, clippy::print_stderr)]
-fn finish<E: std::fmt::Display>(wrong: Result<Vec<String>, E>) -> ExitCode {
-    match wrong {
-        Ok(lines) => {
-            lines.iter().for_each(|line| println!("{line}"));
-            if lines.is_empty() {
-                ExitCode::SUCCESS
-            } else {
-                ExitCode::FAILURE
             }
         }
         Err(error) => {

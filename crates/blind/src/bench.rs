@@ -151,9 +151,14 @@ impl Bench {
     }
 
     /// What an unknown initial state can add to the outputs: the free responses of the model to a
-    /// unit of each state, one set of outputs for each.
-    pub(crate) fn free_responses(&self, model: &Model) -> Result<Vec<Vec<Vec<f64>>>, BlindError> {
-        let simulator = Simulator::new(model, &[], OVERSAMPLING)?;
+    /// unit of each state, one set of outputs for each. A lightly damped plant rings at its own
+    /// frequency, so its small parameter errors count.
+    pub(crate) fn free_responses(
+        &self,
+        model: &Model,
+        deviations: &[Placed],
+    ) -> Result<Vec<Vec<Vec<f64>>>, BlindError> {
+        let simulator = Simulator::new(model, deviations, OVERSAMPLING)?;
         let mut run = self.coarse_run(model);
         run.inputs.iter_mut().for_each(|u| u.fill(0.0));
         (0..simulator.state_len())

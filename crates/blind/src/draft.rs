@@ -92,7 +92,7 @@ pub(crate) fn place(
 ) -> Result<Option<Vec<Placed>>, BlindError> {
     let model = &draft.plant.model;
     let bench = &draft.benches[0];
-    let free = bench.free_responses(model)?;
+    let free = bench.free_responses(model, &draft.deviations)?;
     let mut effects = vec![];
     for &effect in wanted {
         let sites = sites(model, effect.site());
@@ -186,9 +186,35 @@ pub(crate) fn accept(
         if !(lower..=upper).contains(&gap) {
             return Ok(false);
         }
+        for simpler in simpler(&draft.effects[i]) {
+            let mut instead = others.clone();
+            instead.push(simpler);
+            let apart = gap_over_records(draft, &with, &outputs(draft, &instead, 1)?)?;
+            if apart.is_nan() || apart < lower {
+                return Ok(false);
+            }
+        }
         draft.gaps.push(gap);
     }
     reproducible(draft, &with)
+}
+
+/// Simpler laws of which the effect is a refinement: what it adds to them must matter too, or the
+/// simpler name would be the better answer.
+fn simpler(placed: &Placed) -> Vec<Placed> {
+    let coulomb = match placed.effect.kind() {
+        "stribeck_friction" => find("coulomb_friction"),
+        _ => None,
+    };
+    let levels = coulomb.map(|effect| {
+        let [sliding, breakaway] = [placed.values[0], placed.values[1]];
+        [sliding, 0.5 * (sliding + breakaway)].map(|level| Placed {
+            effect,
+            at: placed.at.clone(),
+            values: vec![level],
+        })
+    });
+    levels.into_iter().flatten().collect()
 }
 
 fn is_nominal(kind: &str) -> bool {
@@ -204,7 +230,11 @@ fn gap_over_records(
     let model = &draft.plant.model;
     let mut square = vec![0.0; model.outputs.len()];
     for (bench, (with, without)) in draft.benches.iter().zip(with.iter().zip(without)) {
-        let gaps = visible_gap(with, without, &bench.free_responses(model)?);
+        let gaps = visible_gap(
+            with,
+            without,
+            &bench.free_responses(model, &draft.deviations)?,
+        );
         for (sum, gap) in square.iter_mut().zip(gaps) {
             *sum += gap * gap / draft.benches.len() as f64;
         }

@@ -84,8 +84,8 @@ pub(crate) fn draft(
     let benches = benches(random, &plant);
     let noise_share = random.log_uniform(NOISE[0], NOISE[1]);
     let nominal = |effect: &&'static dyn Effect| effect.family() == Family::NominalParameter;
-    let right_parameters = matches!(recipe, Recipe::Noise | Recipe::TwoParameters)
-        || wanted.iter().any(nominal);
+    let right_parameters =
+        matches!(recipe, Recipe::Noise | Recipe::TwoParameters) || wanted.iter().any(nominal);
     let deviations = if right_parameters || random.chance(0.5) {
         vec![]
     } else {
@@ -341,6 +341,25 @@ mod tests {
                     );
                 }
             }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn verify_a_force_that_leaves_no_trace_is_not_drawn() -> Result<(), BlindError> {
+        // A constant force only shifts the rest position: accelerometers on a sprung plant do not
+        // see it, however the plant started.
+        for number in 0..12 {
+            let case = generate(12, number, &Recipe::Kind("constant_force".into()))?;
+            let model = &case.model;
+            let held = model
+                .static_deflection(&vec![1.0; model.dof_count()])
+                .is_ok();
+            let blind = model
+                .outputs
+                .iter()
+                .all(|o| o.kind != simgap_model::OutputKind::Displacement);
+            assert!(!(held && blind), "{} {}", case.name, model.name);
         }
         Ok(())
     }
