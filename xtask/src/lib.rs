@@ -2,4 +2,6 @@
 
 pub mod blind_check;
 pub mod demo_records;
+pub mod effects_docs;
 pub mod reproduce;
+pub mod tidy;

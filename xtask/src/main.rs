@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use xtask::{blind_check, demo_records, reproduce};
+use xtask::{blind_check, demo_records, effects_docs, reproduce, tidy};
 
 #[derive(Parser)]
 #[command(name = "xtask", about = "Project tasks")]
@@ -20,6 +20,10 @@ enum Task {
     DemoRecords(demo_records::DemoArgs),
     /// Diagnose generated cases whose effect is withheld, and score the answers
     BlindCheck(blind_check::Args),
+    /// Write docs/effects.md from the catalogue of effects
+    EffectsDocs(effects_docs::Args),
+    /// Check the rules that keep the workspace in shape
+    Tidy,
 }
 
 #[allow(clippy::print_stdout, clippy::print_stderr)]
@@ -28,6 +32,8 @@ fn main() -> ExitCode {
         Task::ReproducePaper(args) => reproduce::run(&args),
         Task::DemoRecords(args) => return demo(&args),
         Task::BlindCheck(args) => return blind_check::main(&args),
+        Task::EffectsDocs(args) => return finish(effects_docs::run(&args)),
+        Task::Tidy => return finish(tidy::run()),
     };
     match outcome {
         Ok(outcome) => {
@@ -64,6 +70,25 @@ fn demo(args: &demo_records::DemoArgs) -> ExitCode {
                 ExitCode::FAILURE
             } else {
                 ExitCode::SUCCESS
+            }
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Prints what is wrong; nothing wrong is success.
+#[allow(clippy::print_stdout, clippy::print_stderr)]
+fn finish<E: std::fmt::Display>(wrong: Result<Vec<String>, E>) -> ExitCode {
+    match wrong {
+        Ok(lines) => {
+            lines.iter().for_each(|line| println!("{line}"));
+            if lines.is_empty() {
+                ExitCode::SUCCESS
+            } else {
+                ExitCode::FAILURE
             }
         }
         Err(error) => {
