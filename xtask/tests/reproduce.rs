@@ -1,12 +1,17 @@
 //! The reproduction of the paper: golden values, and what `--check` sees.
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use xtask::reproduce::{
     Block, Comparison, Context, Outcome, Verdict, check, generate, pages, write,
 };
+
+/// Generated once for all tests.
+static FILES: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| generate().unwrap());
 
 fn fresh(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -47,13 +52,13 @@ fn verify_committed_files_are_as_generated() {
 
 #[test]
 fn verify_generation_is_deterministic() {
-    assert!(generate().unwrap() == generate().unwrap());
+    assert!(generate().unwrap() == *FILES);
 }
 
 /// Published numbers are never rewritten by a tool.
 #[test]
 fn verify_only_generated_directories_are_written() {
-    for name in generate().unwrap().keys() {
+    for name in FILES.keys() {
         let allowed =
             name.starts_with("docs/reproduction/") || name.starts_with("fixtures/reproduction/");
         assert!(allowed, "{name}");
@@ -62,7 +67,7 @@ fn verify_only_generated_directories_are_written() {
 
 #[test]
 fn verify_every_page_says_that_the_data_is_rebuilt() {
-    for (name, text) in generate().unwrap() {
+    for (name, text) in FILES.iter() {
         if !name.ends_with(".svg") {
             assert!(text.contains("rebuilt from them, not measured"), "{name}");
         }
@@ -72,7 +77,6 @@ fn verify_every_page_says_that_the_data_is_rebuilt() {
 /// Every picture a page shows is generated, and every generated picture is shown.
 #[test]
 fn verify_pictures_and_pages_agree() {
-    let files = generate().unwrap();
     let mut shown: Vec<String> = Vec::new();
     for page in pages().unwrap() {
         for block in &page.blocks {
@@ -83,7 +87,7 @@ fn verify_pictures_and_pages_agree() {
         }
     }
     shown.sort();
-    let drawn: Vec<String> = files
+    let drawn: Vec<String> = FILES
         .keys()
         .filter(|name| name.ends_with(".svg"))
         .cloned()
@@ -94,7 +98,7 @@ fn verify_pictures_and_pages_agree() {
 #[test]
 fn verify_check_names_what_differs() {
     let root = fresh("check");
-    let count = generate().unwrap().len();
+    let count = FILES.len();
     assert_eq!(write(&root).unwrap(), Outcome::Written(count));
     assert_eq!(check(&root).unwrap(), Outcome::Same(count));
 

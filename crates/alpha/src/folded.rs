@@ -64,15 +64,8 @@ pub fn fit_folded_beat(
             }
         })
         .collect();
-    let start_hz = nyquist_hz - line_hz;
-    let columns = vec![
-        time.iter().map(|t| (TAU * start_hz * t).cos()).collect(),
-        time.iter().map(|t| (TAU * start_hz * t).sin()).collect(),
-    ];
-    let b = linear("folded beat part", &columns, &turned)?.coefficients;
-    let line = Polar::new(b[0], b[1]);
-    let begin = [line.amplitude, start_hz, line.phase];
-    let scales = [line.amplitude, nyquist_hz, 1.0];
+    let begin = start(&time, &turned, nyquist_hz - line_hz)?;
+    let scales = [begin[0], nyquist_hz, 1.0];
     let fit = nonlinear("folded beat part", &turned, &begin, &scales, |p| {
         line_model(&time, p)
     })?;
@@ -94,6 +87,17 @@ pub fn fit_folded_beat(
         carrier_phase: 0.0,
         residual_rms: (fit.residual_square_sum / used.len() as f64).sqrt(),
     })
+}
+
+/// Amplitude, frequency and phase of the line at the starting frequency.
+fn start(time: &[f64], turned: &[f64], freq_hz: f64) -> Result<[f64; 3], AlphaError> {
+    let columns = vec![
+        time.iter().map(|t| (TAU * freq_hz * t).cos()).collect(),
+        time.iter().map(|t| (TAU * freq_hz * t).sin()).collect(),
+    ];
+    let fit = linear("folded beat part", &columns, turned)?.coefficients;
+    let line = Polar::new(fit[0], fit[1]);
+    Ok([line.amplitude, freq_hz, line.phase])
 }
 
 /// Values and derivatives of a line at parameters A, f, φ.

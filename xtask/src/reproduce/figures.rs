@@ -33,80 +33,81 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     })
 }
 
+/// Figure, what it shows, and what is here of it.
+const FIGURES: [[&str; 3]; 16] = [
+    ["1", "mold oscillator", "a drawing: not computable"],
+    [
+        "2",
+        "step, model and experiment",
+        "model in [Table 1](table1.md); the experiment is lost",
+    ],
+    [
+        "3",
+        "sweep, model and experiment differ",
+        "below, in kind, on rebuilt records",
+    ],
+    [
+        "4",
+        "displacement, velocity, acceleration at 1 Hz",
+        "below, in kind",
+    ],
+    [
+        "5",
+        "unknown force by excitation",
+        "[Table 3](table3.md), in kind",
+    ],
+    [
+        "6",
+        "spectrum of unknown force and beat function",
+        "[Table 4](table4.md), in kind",
+    ],
+    [
+        "7",
+        "unknown force and its expression",
+        "[Table 4](table4.md), in kind",
+    ],
+    ["8", "design with leaf springs", "a drawing: not computable"],
+    [
+        "9",
+        "natural frequencies of the finite element model",
+        "not computable: the model is not printed",
+    ],
+    ["10", "diagram of the two-mass model", "a drawing: Eq. (4)"],
+    ["11", "1-DOF model with the unknown force", "below, in kind"],
+    [
+        "12",
+        "spectra of displacement and force",
+        "[Table 2](table2.md), in kind",
+    ],
+    [
+        "13",
+        "two-mass model at 1 Hz",
+        "[Table 5](table5.md), in kind",
+    ],
+    [
+        "14",
+        "two-mass model at 6 Hz (caption: 2 Hz)",
+        "[Table 5](table5.md), in kind",
+    ],
+    [
+        "15",
+        "spectrum of the two-mass model at 1 Hz",
+        "[Table 5](table5.md), in kind",
+    ],
+    [
+        "16",
+        "global and local vibration",
+        "[Table 5](table5.md), in kind",
+    ],
+];
+
 fn list() -> Table {
     let mut table = Table::new("Figures of the paper", &["figure", "shows", "here"]);
-    for (figure, shows, here) in [
-        ("1", "mold oscillator", "a drawing: not computable"),
-        (
-            "2",
-            "step, model and experiment",
-            "model in [Table 1](table1.md); the experiment is lost",
-        ),
-        (
-            "3",
-            "sweep, model and experiment differ",
-            "below, in kind, on rebuilt records",
-        ),
-        (
-            "4",
-            "displacement, velocity, acceleration at 1 Hz",
-            "below, in kind",
-        ),
-        (
-            "5",
-            "unknown force by excitation",
-            "[Table 3](table3.md), in kind",
-        ),
-        (
-            "6",
-            "spectrum of unknown force and beat function",
-            "[Table 4](table4.md), in kind",
-        ),
-        (
-            "7",
-            "unknown force and its expression",
-            "[Table 4](table4.md), in kind",
-        ),
-        ("8", "design with leaf springs", "a drawing: not computable"),
-        (
-            "9",
-            "natural frequencies of the finite element model",
-            "not computable: the model is not printed",
-        ),
-        ("10", "diagram of the two-mass model", "a drawing: Eq. (4)"),
-        ("11", "1-DOF model with the unknown force", "below, in kind"),
-        (
-            "12",
-            "spectra of displacement and force",
-            "[Table 2](table2.md), in kind",
-        ),
-        (
-            "13",
-            "two-mass model at 1 Hz",
-            "[Table 5](table5.md), in kind",
-        ),
-        (
-            "14",
-            "two-mass model at 6 Hz (caption: 2 Hz)",
-            "[Table 5](table5.md), in kind",
-        ),
-        (
-            "15",
-            "spectrum of the two-mass model at 1 Hz",
-            "[Table 5](table5.md), in kind",
-        ),
-        (
-            "16",
-            "global and local vibration",
-            "[Table 5](table5.md), in kind",
-        ),
-    ] {
-        table.rows.push(vec![
-            Cell::text(figure),
-            Cell::text(shows),
-            Cell::text(here),
-        ]);
-    }
+    table.rows.extend(
+        FIGURES
+            .iter()
+            .map(|row| row.iter().map(|cell| Cell::text(*cell)).collect()),
+    );
     table
 }
 

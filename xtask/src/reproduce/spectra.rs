@@ -11,7 +11,7 @@ use simgap_signal::{Trend, Window};
 use simgap_tables::LineRow;
 
 use super::context::{mean, samples};
-use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table, significant};
+use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table, Verdict, significant};
 
 /// Noise put on the rebuilt displacement, m: a tenth of a micrometre, so that the detection of
 /// lines has a floor to work against. The paper prints none.
@@ -111,9 +111,19 @@ fn find(context: &Context) -> Result<Vec<Found<'_>>, ReproduceError> {
     context.table2.rows.iter().map(of).collect()
 }
 
-/// The high lines of Table 2 beside the nearest line found.
-pub(crate) fn high_lines(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
-    Ok(find(context)?.iter().filter_map(high_line).collect())
+/// Whether each displacement has the high line printed, and no pressure has a line that is not
+/// printed.
+pub(crate) fn high_lines_as_printed(context: &Context) -> Result<bool, ReproduceError> {
+    Ok(find(context)?.iter().all(|found| {
+        let displacement =
+            high_line(found).is_some_and(|line| line.verdict() == Verdict::Reproduced);
+        let printed = found.row.pressure.lines_hz();
+        let pressure = found
+            .pressure
+            .iter()
+            .all(|line| found_of(&[*line], printed) == 1);
+        displacement && pressure && found.row.pressure_high.is_none()
+    }))
 }
 
 fn high_line(found: &Found<'_>) -> Option<Comparison> {

@@ -16,7 +16,8 @@ const FORCE_TOLERANCE_N: f64 = 50.0;
 /// displacement fall on harmonics again; with three they do not.
 pub(crate) const HARMONICS: usize = 3;
 
-pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
+/// Table 3 beside the Fourier part of the rebuilt records.
+fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
     let mut rows = Vec::new();
     for row in &context.table3.rows {
         let freq = row.excitation.si();
@@ -40,6 +41,11 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
         rows.push(compare("a0", &row.centre, fit.mean));
         rows.push(compare("max − min", &row.peak_to_peak, fit.peak_to_peak()));
     }
+    Ok(rows)
+}
+
+pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
+    let rows = comparisons(context)?;
     let mut blocks = vec![
         Block::Text(format!(
             "The unknown force of each rebuilt record, through Park's formula twice and Eq. (3), fitted \

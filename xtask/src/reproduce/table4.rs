@@ -42,7 +42,8 @@ pub(crate) fn beat_of(
     )?)
 }
 
-pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
+/// Table 4 beside the beat part of the records rebuilt with the one timing error.
+fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
     let mut rows = Vec::new();
     for row in &context.table4.rows {
         let freq = row.excitation.si();
@@ -82,6 +83,11 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
             BASE_TOLERANCE_HZ,
         ));
     }
+    Ok(rows)
+}
+
+pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
+    let rows = comparisons(context)?;
     let blocks = vec![
         Block::Text(format!(
             "Six records are rebuilt with **one** unknown for all rows: every other sample of the \

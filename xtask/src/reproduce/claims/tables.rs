@@ -1,0 +1,209 @@
+//! Claims on Tables 1 to 4.
+
+use simgap_alpha::BeatParameters;
+use simgap_mold::STANDARD_GRAVITY;
+
+use super::super::context::mean;
+use super::super::table4::proportional;
+use super::super::{Context, ReproduceError, Verdict, significant, spectra, table1};
+use super::Claim;
+
+pub(super) fn on_table_1(context: &Context) -> Result<Vec<Claim>, ReproduceError> {
+    let mold = &context.mold;
+    let stated = &context.stated.first_natural_freq;
+    let freqs = [
+        Some(mold.natural_freq_hz()),
+        mold.damped_freq_hz(),
+        mold.resonance_freq_hz(),
+    ];
+    // Half a unit of the last digit printed.
+    let near = freqs
+        .into_iter()
+        .flatten()
+        .any(|freq| (freq - stated.si()).abs() < 5e-4);
+    let step = table1::comparisons(context)?;
+    let agrees = step.len() == 3
+        && step
+            .iter()
+            .all(|row| row.verdict() != Verdict::NotReproducible);
+    let shown = |freq: Option<f64>| significant(freq.unwrap_or(f64::NAN), 5);
+    Ok(vec![
+        Claim::judged(
+            "mass, damping ratio and stiffness follow from a step",
+            "2.1.1, Table 1",
+            (agrees, Verdict::WithinTolerance),
+            "a simulated step returns the printed values within 1e-4; the measured step is lost ([Table 1](table1.md))",
+        ),
+        Claim::judged(
+            "the first natural frequency is 2.499 Hz",
+            "3.1",
+            (near, Verdict::Reproduced),
+            format!(
+                "Table 1 gives {} Hz natural, {} Hz damped, {} Hz at resonance",
+                shown(freqs[0]),
+                shown(freqs[1]),
+                shown(freqs[2])
+            ),
+        ),
+    ])
+}
+
+pub(super) fn on_table_2(context: &Context) -> Result<Vec<Claim>, ReproduceError> {
+    let nyquist = 0.5 / context.time_step_s();
+    let base = context.stated.image_base.si();
+    Ok(vec![
+        Claim::judged(
+            "displacement has a line at 50 − f, pressure has none",
+            "2.1.2, Table 2",
+            (
+                spectra::high_lines_as_printed(context)?,
+                Verdict::Reproduced,
+            ),
+            "follows from one timing error on the displacement ([Table 2](table2.md)); all seven printed lines are half the \
+             sample rate less f",
+        ),
+        Claim::judged(
+            "the line at 50 − f shows that the support changes with the excitation",
+            "2.1.2, 2.2.1",
+            (base != nyquist, Verdict::WithinTolerance),
+            format!(
+                "{} Hz is half the sample rate: the image of f by the sampling lies there too, and what is printed \
+                 cannot tell them apart ([two readings](readings.md))",
+                significant(nyquist, 2)
+            ),
+        ),
+    ])
+}
+
+/// Largest relative distance of an a0 from their mean.
+pub(super) fn spread_of_centre(context: &Context) -> f64 {
+    let centres = centres(context);
+    let average = mean(&centres);
+    centres
+        .iter()
+        .map(|centre| (centre / average - 1.0).abs())
+        .fold(0.0, f64::max)
+}
+
+fn centres(context: &Context) -> Vec<f64> {
+    context
+        .table3
+        .rows
+        .iter()
+        .map(|row| row.centre.si())
+        .collect()
+}
+
+pub(super) fn on_table_3(context: &Context) -> Vec<Claim> {
+    let average = mean(&centres(context));
+    let spread = spread_of_centre(context);
+    let weight = &context.stated.weight_equivalent;
+    let mass = -average / STANDARD_GRAVITY;
+    let stroke: Vec<f64> = context
+        .table3
+        .rows
+        .iter()
+        .map(|row| row.peak_to_peak.si())
+        .collect();
+    let grows = stroke[..4].windows(2).all(|pair| pair[1] > pair[0]);
+    let jumps = stroke[4] > 4.0 * stroke[3] && stroke[5] < stroke[3];
+    vec![
+        Claim::judged(
+            "a0 is steady over the excitations",
+            "2.1.4, Table 3",
+            (spread < 0.01, Verdict::Reproduced),
+            format!(
+                "{} N on average, none further off than {} %",
+                significant(average, 5),
+                significant(1e2 * spread, 2)
+            ),
+        ),
+        Claim::judged(
+            "a0 corresponds to 1.0355 tons",
+            "2.1.4",
+            (
+                (mass / weight.si() - 1.0).abs() < 0.006,
+                Verdict::WithinTolerance,
+            ),
+            format!(
+                "{} t at standard gravity; tolerance 0.6 %",
+                significant(1e-3 * mass, 5)
+            ),
+        ),
+        Claim::judged(
+            "the stroke of the Fourier part grows up to 4 Hz, jumps at 5 Hz, falls at 6 Hz",
+            "2.1.4, Table 3",
+            (grows && jumps, Verdict::Reproduced),
+            "read off the table; the records are rebuilt from it ([Table 3](table3.md))",
+        ),
+        Claim::judged(
+            "a torsional mode causes the jump at 5 Hz",
+            "2.1.4",
+            (false, Verdict::WithinTolerance),
+            "one operating point, and nothing printed about the mode",
+        ),
+    ]
+}
+
+/// How far a line of the printed beats is from 50 ∓ f, and the ends of the carriers, Hz.
+fn beat_lines(context: &Context) -> (f64, [f64; 2]) {
+    let base = context.stated.image_base.si();
+    let (mut off, mut carriers) = (0.0_f64, [f64::INFINITY, 0.0_f64]);
+    for row in &context.table4.rows {
+        let beat = BeatParameters {
+            amplitude: row.amplitude.si(),
+            base_hz: row.base.si(),
+            split_hz: row.split.si(),
+        };
+        let (freq, pair) = (row.excitation.si(), beat.lines());
+        off = off.max((pair.lower_hz - base + freq).abs());
+        off = off.max((pair.upper_hz - base - freq).abs());
+        carriers = [
+            carriers[0].min(beat.carrier_hz()),
+            carriers[1].max(beat.carrier_hz()),
+        ];
+    }
+    (off, carriers)
+}
+
+pub(super) fn on_table_4(context: &Context) -> Vec<Claim> {
+    // Half of the last digit the notes on the paper give.
+    const HALF_DIGIT_HZ: f64 = 0.005;
+    let (off, [least, most]) = beat_lines(context);
+    let holds =
+        off < 0.06 + HALF_DIGIT_HZ && least > 49.95 - HALF_DIGIT_HZ && most < 50.06 + HALF_DIGIT_HZ;
+    let (_, r_squared, worst) = proportional(context);
+    let period = 1.0 / context.table4.rows[0].split.si();
+    vec![
+        Claim::judged(
+            "the beat has lines at 50 ∓ f",
+            "2.1.4, Table 4",
+            (holds, Verdict::WithinTolerance),
+            format!(
+                "read with cycles: lines within {} Hz, carriers {} to {} Hz",
+                significant(off, 1),
+                significant(least, 4),
+                significant(most, 4)
+            ),
+        ),
+        Claim::judged(
+            "the beat period at 1 Hz is 0.5 s",
+            "2.2.3",
+            (
+                period == context.stated.beat_period.si(),
+                Verdict::Reproduced,
+            ),
+            "1/δ of Table 4",
+        ),
+        Claim::judged(
+            "the beat's amplitude is proportional to the excitation frequency",
+            "2.1.4, Table 4",
+            (worst < 0.1, Verdict::WithinTolerance),
+            format!(
+                "a line through zero has R² = {} and misses a row by {} %; tolerance 10 %",
+                significant(r_squared, 3),
+                significant(1e2 * worst, 2)
+            ),
+        ),
+    ]
+}
