@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use simgap_effects::{Action, Family, Placed, catalogue};
 use simgap_estimate::{Fit, Problem, Start, Weights, fit, fit_initial_states};
 use simgap_model::{Location, Model, OutputKind};
-use simgap_record::Record;
+use simgap_record::{Defect, QualityFinding, Record};
 
 use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
@@ -245,11 +245,21 @@ fn locate_places(model: &Model) -> Vec<Location> {
 fn notes(request: &Request<'_>, data: &Data) -> Vec<String> {
     let mut notes = data.notes.clone();
     for record in request.train.iter().chain(request.check) {
-        for finding in simgap_record::quality(record) {
+        for finding in simgap_record::quality(record)
+            .into_iter()
+            .filter(worth_a_note)
+        {
             notes.push(format!("{}: {finding}", record.name()));
         }
     }
     notes
+}
+
+/// A lattice of more steps than this is how numbers are printed, not what a converter does.
+const FINE_LATTICE: usize = 4096;
+
+fn worth_a_note(finding: &QualityFinding) -> bool {
+    !matches!(finding.defect, Defect::Quantised { levels, .. } if levels > FINE_LATTICE)
 }
 
 /// The nominal model with its parameters changed and the effects listed.

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use simgap_effects::{Family, Placed};
 use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states};
+use simgap_simulate::Run;
 
 use crate::evidence::probabilities;
 use crate::search::{Hypothesis, Search, remove, sort};
@@ -99,15 +100,46 @@ pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, 
     }
 }
 
-/// Whether the larger set predicts better what neither was fitted to.
+/// Whether the larger set predicts better what neither was fitted to: the last part of each run
+/// or, where that says nothing (a decay that is over), a whole run.
 fn confirmed(
     search: &Search<'_>,
     larger: &Hypothesis,
     smaller: &Hypothesis,
 ) -> Result<bool, EstimateError> {
-    let left = [larger, smaller]
+    let runs = &search.problem.runs;
+    let cut = |run: &Run| (run.len as f64 * LEARNT) as usize;
+    let first = runs.iter().map(|run| run.slice(0..cut(run))).collect();
+    let last = runs
+        .iter()
+        .map(|run| run.slice(cut(run)..run.len))
+        .collect();
+    if predicts_better(search, [larger, smaller], first, last)? {
+        return Ok(true);
+    }
+    let Some((apart, others)) = runs.split_last().filter(|(_, others)| !others.is_empty()) else {
+        return Ok(false);
+    };
+    predicts_better(
+        search,
+        [larger, smaller],
+        others.to_vec(),
+        vec![apart.clone()],
+    )
+}
+
+/// Whether the first of two sets, both fitted to `learnt`, predicts `kept` better than the second.
+fn predicts_better(
+    search: &Search<'_>,
+    sets: [&Hypothesis; 2],
+    learnt: Vec<Run>,
+    kept: Vec<Run>,
+) -> Result<bool, EstimateError> {
+    let learnt = search.problem.with_runs(learnt);
+    let kept = search.problem.with_runs(kept);
+    let left = sets
         .into_par_iter()
-        .map(|set| held_back_variance(search.problem, &set.fit.estimate, &search.weights))
+        .map(|set| held_back_variance(&learnt, &kept, &set.fit.estimate, &search.weights))
         .collect::<Result<Vec<_>, _>>()?;
     // One channel that profits is enough, as long as the others do not pay for it.
     let ratios: Vec<f64> = left[0].iter().zip(&left[1]).map(|(l, s)| l / s).collect();
@@ -116,34 +148,22 @@ fn confirmed(
     Ok(best < 1.0 - CONFIRMED && geometric < 0.0)
 }
 
-/// V_c on the last part of each run after a fit to the first part.
+/// V_c on the kept runs after a fit to the learnt ones.
 fn held_back_variance(
-    problem: &Problem,
+    learnt: &Problem,
+    kept: &Problem,
     start: &Start,
     weights: &Weights,
 ) -> Result<Vec<f64>, EstimateError> {
-    let cut = |len: usize| (len as f64 * LEARNT) as usize;
-    let learnt = problem.with_runs(
-        problem
-            .runs
-            .iter()
-            .map(|r| r.slice(0..cut(r.len)))
-            .collect(),
-    );
-    let kept = problem.with_runs(
-        problem
-            .runs
-            .iter()
-            .map(|r| r.slice(cut(r.len)..r.len))
-            .collect(),
-    );
-    let estimate = fit(&learnt, start, weights)?.estimate;
+    let mut start = start.clone();
+    start.initial.truncate(learnt.runs.len());
+    let estimate = fit(learnt, &start, weights)?.estimate;
     let effects: Vec<Placed> = estimate
         .effects
         .into_iter()
         .chain(estimate.nominal)
         .collect();
-    Ok(fit_initial_states(&kept, &effects, weights)?.variance)
+    Ok(fit_initial_states(kept, &effects, weights)?.variance)
 }
 
 /// Finds the rivals of each effect of a set and weighs them.
