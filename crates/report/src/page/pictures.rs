@@ -222,3 +222,21 @@ impl Pictured<'_> {
             .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_the_discrepancy_is_measured_minus_predicted() {
+        assert_eq!(discrepancy(&[3.0, 1.0], &[1.0, 1.5]), [2.0, -0.5]);
+    }
+
+    #[test]
+    fn verify_the_gap_is_relative_to_the_spread() {
+        // Spread about the mean 1 is 1, the prediction is off by 0.5 everywhere.
+        let gap = relative_gap(&[0.0, 2.0, f64::NAN], &[0.5, 1.5, 0.0]);
+        assert!((gap - 0.5).abs() < 1e-15, "{gap}");
+        assert_eq!(relative_gap(&[1.0, 1.0], &[0.0, 0.0]), 0.0);
+    }
+}
