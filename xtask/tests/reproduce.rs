@@ -30,7 +30,7 @@ fn regress_pages() {
     }
 }
 
-/// The one number for Table 4, from the committed code, in the digits of the notes on the paper.
+/// The one number for Table 4, from the committed code, to three digits.
 #[test]
 fn val_park_one_timing_error() {
     let timing = Context::new().unwrap().timing;

@@ -9,7 +9,7 @@ use simgap_mold::{
     TwoDof, published_line_amplitude, published_plan, rebuild,
 };
 
-/// Half a unit of the third decimal, the precision the notes on the paper are checked to.
+/// Half a unit of the third decimal, to which these values were worked out by hand.
 const THIRD_DECIMAL: f64 = 5e-4;
 
 /// Eigenvalues of a 2 × 2 problem scaled to 1e5: a few units in the last place.

@@ -12,9 +12,6 @@ use super::number::{round_to, significant};
 pub(crate) const REBUILT: &str = "The measured data of the paper is lost. Only its tables and text \
 remain; every record used here is rebuilt from them, not measured.";
 
-/// Significant digits of numbers in JSON and, unless a cell says otherwise, in tables.
-const DIGITS: usize = 6;
-
 /// What became of a published number or claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
@@ -294,7 +291,6 @@ impl Page {
             "page": self.stem,
             "title": self.title,
             "data": REBUILT,
-            "significant_digits": DIGITS,
             "tables": tables,
         })
     }

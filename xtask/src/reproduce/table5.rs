@@ -86,7 +86,7 @@ fn modes(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
                 unit: "Hz",
                 printed: format!("{published}"),
                 published,
-                // Three decimals: the digits the notes on the paper are checked to.
+                // Three decimals: enough to tell the modes apart.
                 ours: (1e3 * ours).round() * 1e-3,
                 tolerance: MODE_TOLERANCE_HZ,
             });

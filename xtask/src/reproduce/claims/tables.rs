@@ -167,7 +167,7 @@ fn beat_lines(context: &Context) -> (f64, [f64; 2]) {
 }
 
 pub(super) fn on_table_4(context: &Context) -> Vec<Claim> {
-    // Half of the last digit the notes on the paper give.
+    // Half of the second decimal, the last printed.
     const HALF_DIGIT_HZ: f64 = 0.005;
     let (off, [least, most]) = beat_lines(context);
     let holds =
