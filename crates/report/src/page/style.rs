@@ -3,7 +3,7 @@
 use crate::chart::{NEUTRAL_COLOURS, ROLE_COLOURS};
 
 const BASE: &str = "\
-:root{--paper:#ffffff;--card:#f6f8fa;--ink:#1f2328;--soft:#57606a;--line:#d0d7de;--accent:#0072b2;--warn:#b35900}
+:root{--paper:#ffffff;--card:#f6f8fa;--ink:#1f2328;--soft:#57606a;--line:#d0d7de;--accent:#0072b2}
 *{box-sizing:border-box}
 html{-webkit-text-size-adjust:100%}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,sans-serif}
@@ -52,7 +52,7 @@ li,h1,p,dd,.tile{overflow-wrap:anywhere}
 ";
 
 const DARK: &str = "\
-:root{--paper:#0f1419;--card:#171d24;--ink:#e6edf3;--soft:#a3abb5;--line:#30373f;--accent:#5cb8f2;--warn:#ff9a4d;color-scheme:dark}
+:root{--paper:#0f1419;--card:#171d24;--ink:#e6edf3;--soft:#a3abb5;--line:#30373f;--accent:#5cb8f2;color-scheme:dark}
 ";
 
 /// The style sheet. On dark screens the colours written in the pictures are replaced by their
