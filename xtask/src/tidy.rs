@@ -107,3 +107,8 @@ pub fn run() -> Result<Vec<String>, TidyError> {
         .map(|finding| finding.to_string())
         .collect())
 }
+
+/// The README's example is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -77,6 +77,24 @@ fn verify_references_resolve() {
 }
 
 #[test]
+fn verify_the_commands_of_the_readme_are_run() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let (readme, run) = (read("README.md"), read(".ci/run"));
+    for command in [
+        "cargo run -p simgap-cli -- demo",
+        "cargo test --workspace",
+        "cargo xtask reproduce-paper --check",
+    ] {
+        assert!(
+            readme.lines().any(|line| line == command),
+            "README.md: {command}"
+        );
+        assert!(run.contains(command), ".ci/run: {command}");
+    }
+}
+
+#[test]
 fn verify_every_rule_is_run_by_the_command() {
     // `cargo xtask tidy` runs RULES; each line above is one of them.
     assert_eq!(tidy::RULES.len(), 13);
