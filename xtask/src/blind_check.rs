@@ -369,3 +369,49 @@ fn entry_text(entry: &EffectEntry) -> String {
         .collect();
     format!("{} {} [{}]", entry.kind, entry.at, values.join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn args(jobs: usize) -> Args {
+        Args {
+            cases: 1,
+            seed: 3,
+            kinds: vec!["sensor_bias".to_string()],
+            only: None,
+            jobs: Some(jobs),
+            out: None,
+            check_thresholds: false,
+            details: true,
+            short: false,
+        }
+    }
+
+    #[test]
+    fn verify_the_report_does_not_depend_on_the_threads() -> Result<(), BlindCheckError> {
+        let (one, three) = (run(&args(1))?, run(&args(3))?);
+        assert_eq!(one.text, three.text);
+        assert!(one.text.contains("case-0000 sensor_bias"), "{}", one.text);
+        Ok(())
+    }
+
+    #[test]
+    fn verify_figures_below_their_floors_are_faults() {
+        let fine = Totals {
+            placed: FLOORS.placed,
+            false_alarms: FLOORS.false_alarms,
+            brier: FLOORS.brier,
+            ..Totals::of(&[])
+        };
+        assert!(below_floors(&fine, 0).is_empty());
+        assert_eq!(below_floors(&fine, 2), ["2 cases could not be diagnosed"]);
+        let poor = Totals {
+            placed: 0.1,
+            false_alarms: 1.0,
+            brier: 0.9,
+            ..fine
+        };
+        assert_eq!(below_floors(&poor, 0).len(), 3);
+    }
+}

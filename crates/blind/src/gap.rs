@@ -12,11 +12,11 @@ pub(crate) fn std(values: &[f64]) -> f64 {
     (square / values.len().max(1) as f64).sqrt()
 }
 
-/// For each channel, the rms of what is left of `with − without` over std(`without`), after the
-/// part that another initial state would explain is taken out:
+/// For each channel, the rms of what is left of `with − without` over std(`with`), the measured
+/// signal, after the part that another initial state would explain is taken out:
 ///
 /// ```text
-/// g = (y_with − y_without) / std(y_without),  all channels in one vector     (1)
+/// g = (y_with − y_without) / std(y_with),     all channels in one vector     (1)
 /// r = g − Q Qᵀ g,   Q an orthonormal basis of the free responses             (2)
 /// gap_c = rms(r_c)                                                           (3)
 /// ```
@@ -25,7 +25,7 @@ pub(crate) fn visible_gap(
     without: &[Vec<f64>],
     free_responses: &[Vec<Vec<f64>>],
 ) -> Vec<f64> {
-    let scale: Vec<f64> = without.iter().map(|y| 1.0 / std(y)).collect();
+    let scale: Vec<f64> = with.iter().map(|y| 1.0 / std(y)).collect();
     let stacked = |signals: &[Vec<f64>]| -> Vec<f64> {
         signals
             .iter()
