@@ -1,40 +1,54 @@
 //! `simgap diagnose`.
 
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use simgap_diagnose::{CheckSeries, Outcome, Request, diagnose};
-use simgap_record::{ensure_writable_dir, write_csv_atomic, write_text_atomic};
+use simgap_record::{write_csv_atomic, write_text_atomic};
 
 use crate::args::{DiagnoseArgs, Format};
 use crate::error::CliError;
-use crate::input;
+use crate::folder::Folder;
 use crate::progress::Steps;
+use crate::{input, say};
+
+/// Folder of the predictions, inside the folder of the results.
+const PREDICTIONS: &str = "predictions";
 
 pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
+    if args.jobs == Some(0) {
+        return Err(CliError::Jobs { found: 0 });
+    }
+    let judged = if args.check.is_empty() {
+        &args.train
+    } else {
+        &args.check
+    };
+    distinct_stems(judged)?;
     let model = input::model(&args.model)?;
-    let read = |paths: &[std::path::PathBuf]| {
+    let read = |paths: &[PathBuf]| {
         paths
             .iter()
             .map(|path| input::record(path, &model))
             .collect::<Result<Vec<_>, _>>()
     };
     let (train, check) = (read(&args.train)?, read(&args.check)?);
-    distinct_stems(if check.is_empty() {
-        &args.train
-    } else {
-        &args.check
-    })?;
+    // A folder that cannot be written to is told before the work, not after it.
+    let stems: Vec<String> = judged.iter().map(|path| stem(path)).collect();
+    Folder::attempt(&args.out, &[PREDICTIONS], &files(&args.out, &stems))?;
     let request = Request {
         model: &model,
         train: &train,
         check: &check,
         withheld: &args.withhold,
     };
-    let outcome = in_pool(args.jobs, || {
+    let mut outcome = in_pool(args.jobs, || {
         let steps = Steps::new();
         diagnose(&request, &|step| steps.show(step))
     })??;
+    let all = train.iter().chain(&check);
+    let conversions = all.flat_map(|record| input::conversions(record, &model));
+    outcome.diagnosis.notes.extend(conversions);
     let context = simgap_report::page::ReportContext {
         program_version: env!("CARGO_PKG_VERSION").to_string(),
         model_file: file_name(&args.model),
@@ -44,10 +58,14 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     };
     let json = write(&outcome, &context, &args.out)?;
     match args.format {
-        Format::Json => print!("{json}"),
+        Format::Json => say(&json),
         Format::Human => {
-            print!("{}", summary(&outcome));
-            println!("report: {}", args.out.join("report.html").display());
+            let report = args.out.join("report.html");
+            say(&format!(
+                "{}report: {}\n",
+                summary(&outcome),
+                report.display()
+            ));
         }
     }
     Ok(())
@@ -70,7 +88,6 @@ pub(crate) fn in_pool<T: Send>(
 ) -> Result<T, CliError> {
     match jobs {
         None => Ok(work()),
-        Some(0) => Err(CliError::Jobs { found: 0 }),
         Some(jobs) => rayon::ThreadPoolBuilder::new()
             .num_threads(jobs)
             .build()
@@ -81,14 +98,29 @@ pub(crate) fn in_pool<T: Send>(
     }
 }
 
-fn distinct_stems(paths: &[std::path::PathBuf]) -> Result<(), CliError> {
-    let mut seen = BTreeSet::new();
+fn distinct_stems(paths: &[PathBuf]) -> Result<(), CliError> {
+    let mut seen: BTreeMap<String, &PathBuf> = BTreeMap::new();
     for path in paths {
-        if !seen.insert(stem(path)) {
-            return Err(CliError::SameStem { stem: stem(path) });
+        if let Some(first) = seen.insert(stem(path), path) {
+            return Err(CliError::SameStem {
+                first: first.clone(),
+                second: path.clone(),
+                stem: stem(path),
+            });
         }
     }
     Ok(())
+}
+
+/// The files of a result.
+fn files(out: &Path, stems: &[String]) -> Vec<PathBuf> {
+    let named = ["diagnosis.json", "corrected.toml", "report.html"].map(|name| out.join(name));
+    let predictions = stems.iter().map(|stem| prediction_file(out, stem));
+    named.into_iter().chain(predictions).collect()
+}
+
+fn prediction_file(out: &Path, stem: &str) -> PathBuf {
+    out.join(PREDICTIONS).join(format!("{stem}.csv"))
 }
 
 fn stem(path: &Path) -> String {
@@ -123,19 +155,40 @@ pub(crate) fn write(
             error,
         })?;
     let report = simgap_report::page::report_html(&outcome.diagnosis, &outcome.series, context)?;
-    ensure_writable_dir(out)?;
-    let predictions = out.join("predictions");
-    ensure_writable_dir(&predictions)?;
+    let stems: Vec<String> = outcome.series.iter().map(stem_of).collect();
+    bounded(&outcome.series)?;
+    let folder = Folder::make(out, &[PREDICTIONS], &files(out, &stems))?;
     for series in &outcome.series {
-        write_predictions(series, &predictions)?;
+        write_predictions(series, out)?;
     }
     write_text_atomic(&out.join("corrected.toml"), &corrected)?;
     write_text_atomic(&out.join("report.html"), &report)?;
     write_text_atomic(&out.join("diagnosis.json"), &json)?;
+    folder.keep();
     Ok(json)
 }
 
-fn write_predictions(series: &CheckSeries, folder: &Path) -> Result<(), CliError> {
+fn stem_of(series: &CheckSeries) -> String {
+    stem(Path::new(&series.record))
+}
+
+/// Refuses predictions that no file can hold.
+fn bounded(series: &[CheckSeries]) -> Result<(), CliError> {
+    for one in series {
+        for channel in &one.channels {
+            let mut values = channel.nominal.iter().chain(&channel.corrected);
+            if values.any(|value| !value.is_finite()) {
+                return Err(CliError::RunsAway {
+                    record: one.record.clone(),
+                    channel: channel.channel.clone(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn write_predictions(series: &CheckSeries, out: &Path) -> Result<(), CliError> {
     let mut headers = vec!["t [s]".to_string()];
     let mut columns: Vec<&[f64]> = vec![&series.time_s];
     for channel in &series.channels {
@@ -148,6 +201,6 @@ fn write_predictions(series: &CheckSeries, folder: &Path) -> Result<(), CliError
             columns.push(values);
         }
     }
-    let path = folder.join(format!("{}.csv", stem(Path::new(&series.record))));
+    let path = prediction_file(out, &stem_of(series));
     Ok(write_csv_atomic(&path, &headers, &columns)?)
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use simgap_diagnose::DiagnoseError;
+use simgap_effects::EffectError;
 use simgap_model::ModelError;
 use simgap_record::RecordError;
 use simgap_report::page::ReportError;
@@ -16,6 +17,8 @@ pub(crate) enum CliError {
     ModelFile { path: PathBuf, found: String },
     #[error("{}: {error}", .path.display())]
     Model { path: PathBuf, error: ModelError },
+    #[error("{}: {error}", .path.display())]
+    Effect { path: PathBuf, error: EffectError },
     #[error(transparent)]
     Record(#[from] RecordError),
     #[error("{}: {error}", .path.display())]
@@ -25,9 +28,18 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(
-        "two check records are both called \"{stem}\", needed is a different file name for each"
+        "{} and {}: the predictions of both would be called \"{stem}\", needed is a different file name for each",
+        .first.display(), .second.display()
     )]
-    SameStem { stem: String },
+    SameStem {
+        first: PathBuf,
+        second: PathBuf,
+        stem: String,
+    },
+    #[error("{}: is a folder, needed is a file or nothing there", .path.display())]
+    FolderInPlace { path: PathBuf },
+    #[error("{}: is an input of this very command, needed is another file to write to", .path.display())]
+    OverInput { path: PathBuf },
     #[error("--jobs is {found}, needed is 1 or more")]
     Jobs { found: usize },
     #[error("the threads could not be started ({found}), needed is a smaller --jobs")]
@@ -35,7 +47,7 @@ pub(crate) enum CliError {
     #[error("the result could not be written as JSON ({found})")]
     Json { found: String },
     #[error(
-        "{record}: the prediction grows beyond all bounds, needed is a model that stays finite"
+        "{record}: the prediction of column \"{channel}\" grows beyond all bounds, needed is a model that stays finite"
     )]
-    RunsAway { record: String },
+    RunsAway { record: String, channel: String },
 }

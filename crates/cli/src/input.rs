@@ -1,28 +1,98 @@
 //! Reading models and records.
 
+use std::io::Read as _;
 use std::path::Path;
 
+use simgap_effects::Placed;
 use simgap_model::Model;
-use simgap_record::{Record, read_csv_channels};
+use simgap_record::{Quantity, Record, RecordError, read_csv_some};
+use simgap_simulate::{input_quantity, output_quantity};
 
 use crate::error::CliError;
 
-/// Reads a model file.
+/// No model file is longer, bytes; a record handed over as the model is refused before it fills
+/// the memory.
+const MAX_MODEL_BYTES: u64 = 16 << 20;
+
+/// Reads a model file, the effects it lists included.
 pub(crate) fn model(path: &Path) -> Result<Model, CliError> {
-    let text = std::fs::read_to_string(path).map_err(|error| CliError::ModelFile {
+    let unreadable = |found: String| CliError::ModelFile {
         path: path.into(),
-        found: error.to_string(),
-    })?;
-    Model::from_toml(&text).map_err(|error| CliError::Model {
+        found,
+    };
+    let file = std::fs::File::open(path).map_err(|error| unreadable(error.to_string()))?;
+    let mut text = String::new();
+    file.take(MAX_MODEL_BYTES + 1)
+        .read_to_string(&mut text)
+        .map_err(|error| unreadable(error.to_string()))?;
+    if text.len() as u64 > MAX_MODEL_BYTES {
+        return Err(unreadable(format!("longer than {MAX_MODEL_BYTES} bytes")));
+    }
+    let model = Model::from_toml(&text).map_err(|error| CliError::Model {
         path: path.into(),
         error,
-    })
+    })?;
+    for entry in &model.effects {
+        Placed::from_entry(&model, entry).map_err(|error| CliError::Effect {
+            path: path.into(),
+            error,
+        })?;
+    }
+    Ok(model)
 }
 
-/// Reads of a record what the model names; other columns may hold anything.
+/// Reads of a record what the model names, inputs and outputs; other columns may hold anything.
 pub(crate) fn record(path: &Path, model: &Model) -> Result<Record, CliError> {
-    let inputs = model.inputs.iter().map(|input| input.channel.as_str());
-    let outputs = model.outputs.iter().map(|output| output.channel.as_str());
-    let names: Vec<&str> = inputs.chain(outputs).collect();
-    Ok(read_csv_channels(path, &names)?)
+    let names: Vec<&str> = inputs(model).chain(outputs(model)).collect();
+    checked(path, model, read_csv_some(path, &names, &[])?)
+}
+
+/// As [`record`], of a record that need not hold the outputs.
+pub(crate) fn record_of_inputs(path: &Path, model: &Model) -> Result<Record, CliError> {
+    let (needed, welcome): (Vec<&str>, Vec<&str>) =
+        (inputs(model).collect(), outputs(model).collect());
+    checked(path, model, read_csv_some(path, &needed, &welcome)?)
+}
+
+fn inputs(model: &Model) -> impl Iterator<Item = &str> {
+    model.inputs.iter().map(|input| input.channel.as_str())
+}
+
+fn outputs(model: &Model) -> impl Iterator<Item = &str> {
+    model.outputs.iter().map(|output| output.channel.as_str())
+}
+
+/// What each column without a gain must measure.
+fn quantities(model: &Model) -> Vec<(&str, Quantity)> {
+    let inputs = model.inputs.iter().filter(|input| input.gain.is_none());
+    let outputs = model.outputs.iter().filter(|output| output.gain.is_none());
+    inputs
+        .map(|input| (input.channel.as_str(), input_quantity(input.kind)))
+        .chain(outputs.map(|output| (output.channel.as_str(), output_quantity(output.kind))))
+        .collect()
+}
+
+/// Refuses units that do not fit here, where the whole path is known.
+fn checked(path: &Path, model: &Model, record: Record) -> Result<Record, CliError> {
+    for (name, quantity) in quantities(model) {
+        let Some(channel) = record.channel(name) else {
+            continue;
+        };
+        channel
+            .si_values(quantity)
+            .map_err(|source| RecordError::InRecord {
+                file: path.display().to_string(),
+                source: Box::new(source),
+            })?;
+    }
+    Ok(record)
+}
+
+/// How units of a record are converted for the model, one sentence each.
+pub(crate) fn conversions(record: &Record, model: &Model) -> Vec<String> {
+    record
+        .conversions_to(&quantities(model))
+        .iter()
+        .map(|conversion| format!("{}: {conversion}", record.name()))
+        .collect()
 }

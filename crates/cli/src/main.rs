@@ -1,15 +1,18 @@
 //! The simgap command line. What it promises is in `docs/contract.md`; exit status 0 means done,
 //! 2 that the input is bad, with one line that says what, where and what is needed.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
+#![allow(clippy::print_stderr)]
 
 mod args;
 mod demo;
 mod diagnose;
 mod error;
+mod folder;
 mod input;
 mod progress;
 mod simulate;
+mod usage;
 
+use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -20,21 +23,47 @@ use args::{Cli, Command};
 const BAD_INPUT: u8 = 2;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let arguments: Vec<String> = std::env::args_os()
+        .map(|argument| argument.to_string_lossy().into_owned())
+        .collect();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => match usage::one_line(&error, &arguments) {
+            Some(line) => return refuse(&line),
+            None => {
+                // Help or version, as asked for; a closed pipe is nobody's fault.
+                let _ = error.print();
+                return ExitCode::SUCCESS;
+            }
+        },
+    };
     let done = match &cli.command {
         Command::Diagnose(args) => diagnose::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Demo(args) => demo::run(args),
         Command::Effects => {
-            print!("{}", args::effects_table());
+            say(&args::effects_table());
             Ok(())
         }
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("simgap: {error}");
-            ExitCode::from(BAD_INPUT)
-        }
+        Err(error) => refuse(&error.to_string()),
     }
+}
+
+/// One line on stderr, whatever the names in it hold.
+fn refuse(message: &str) -> ExitCode {
+    let line: String = message
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    eprintln!("simgap: {line}");
+    ExitCode::from(BAD_INPUT)
+}
+
+/// Text on stdout. A reader that closes the pipe early, as `head` does, has seen what it wanted.
+pub(crate) fn say(text: &str) {
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }

@@ -1,5 +1,7 @@
 //! `simgap simulate`.
 
+use std::path::Path;
+
 use simgap_estimate::{Problem, Weights, fit_initial_states};
 use simgap_model::OutputKind;
 use simgap_record::write_csv_atomic;
@@ -7,11 +9,15 @@ use simgap_simulate::Run;
 
 use crate::args::SimulateArgs;
 use crate::error::CliError;
-use crate::input;
+use crate::folder::{Folder, not_an_input};
+use crate::{input, say};
 
 pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
+    not_an_input(&args.out, &[&args.model, &args.record])?;
+    let (folder, files) = (parent(&args.out), [args.out.clone()]);
+    Folder::attempt(folder, &[], &files)?;
     let model = input::model(&args.model)?;
-    let record = input::record(&args.record, &model)?;
+    let record = input::record_of_inputs(&args.record, &model)?;
     let failed = |error| CliError::Simulate {
         path: args.record.clone(),
         error,
@@ -29,8 +35,12 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     };
     let simulator = problem.simulator(&[]).map_err(failed)?;
     let predicted = simulator.predict(&run, &initial).map_err(failed)?;
-    if predicted.iter().flatten().any(|value| !value.is_finite()) {
-        return Err(CliError::RunsAway { record: run.name });
+    let finite = |signal: &Vec<f64>| signal.iter().all(|value| value.is_finite());
+    if let Some(channel) = predicted.iter().position(|signal| !finite(signal)) {
+        return Err(CliError::RunsAway {
+            record: args.record.display().to_string(),
+            channel: model.outputs[channel].channel.clone(),
+        });
     }
     let mut headers = vec!["t [s]".to_string()];
     let mut columns: Vec<&[f64]> = vec![record.time_s()];
@@ -44,7 +54,17 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
         headers.push(format!("{} [{unit}]", output.channel));
         columns.push(signal);
     }
+    let folder = Folder::make(folder, &[], &files)?;
     write_csv_atomic(&args.out, &headers, &columns)?;
-    println!("{}", args.out.display());
+    folder.keep();
+    say(&format!("{}\n", args.out.display()));
     Ok(())
+}
+
+/// The folder a file goes to.
+fn parent(file: &Path) -> &Path {
+    match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
 }

@@ -22,6 +22,21 @@ pub(crate) struct Header {
     pub(crate) channels: Vec<Column>,
 }
 
+/// The columns asked for, beside the time column.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wanted<'a> {
+    /// Must be there.
+    pub(crate) needed: &'a [&'a str],
+    /// Read if they are there.
+    pub(crate) welcome: &'a [&'a str],
+}
+
+impl Wanted<'_> {
+    fn has(&self, name: &str) -> bool {
+        self.needed.contains(&name) || self.welcome.contains(&name)
+    }
+}
+
 /// A header cell taken apart: `y1 [mm]`.
 struct Cell<'a> {
     text: &'a str,
@@ -60,14 +75,14 @@ pub(crate) fn parse_header(
     file: &str,
     line: u64,
     cells: &[String],
-    wanted: Option<&[&str]>,
+    wanted: Option<Wanted<'_>>,
 ) -> Result<Header, RecordError> {
     let cells: Vec<Cell<'_>> = cells.iter().map(|cell| Cell::parse(cell)).collect();
     let time_index = time_column(file, line, &cells)?;
     let time = column(file, line, &cells, time_index)?;
     let mut channels: Vec<Column> = Vec::with_capacity(cells.len() - 1);
     for (index, cell) in cells.iter().enumerate() {
-        if index == time_index || wanted.is_some_and(|names| !names.contains(&cell.name)) {
+        if index == time_index || wanted.is_some_and(|names| !names.has(cell.name)) {
             continue;
         }
         let found = column(file, line, &cells, index)?;
@@ -83,7 +98,7 @@ pub(crate) fn parse_header(
         }
         channels.push(found);
     }
-    for name in wanted.unwrap_or_default() {
+    for name in wanted.map_or(&[][..], |names| names.needed) {
         if !channels.iter().any(|channel| channel.name == *name) {
             return Err(RecordError::MissingColumn {
                 file: file.to_owned(),

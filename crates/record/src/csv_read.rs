@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use crate::Channel;
-use crate::csv_header::{Header, check_separator, parse_header};
+use crate::csv_header::{Header, Wanted, check_separator, parse_header};
 use crate::error::{Place, RecordError, shortened};
 use crate::record::{Origin, Record};
 
@@ -38,7 +38,21 @@ pub fn read_csv(path: &Path) -> Result<Record, RecordError> {
 ///
 /// As [`read_csv`], and [`RecordError::MissingColumn`] when one of the names is not in the header.
 pub fn read_csv_channels(path: &Path, names: &[&str]) -> Result<Record, RecordError> {
-    read(path, Some(names))
+    read_csv_some(path, names, &[])
+}
+
+/// As [`read_csv_channels`], with further columns that are read if they are there: a record of
+/// inputs alone is enough to drive a model, and its outputs are welcome.
+///
+/// # Errors
+///
+/// As [`read_csv_channels`]; only a missing column of `needed` is an error.
+pub fn read_csv_some(
+    path: &Path,
+    needed: &[&str],
+    welcome: &[&str],
+) -> Result<Record, RecordError> {
+    read(path, Some(Wanted { needed, welcome }))
 }
 
 /// Reads a record from CSV text, as [`read_csv`]; `name` names the record and stands for the file
@@ -52,7 +66,7 @@ pub fn parse_csv(name: &str, text: impl Read) -> Result<Record, RecordError> {
     Reader::new(name, text).record(name.to_owned(), None)
 }
 
-fn read(path: &Path, wanted: Option<&[&str]>) -> Result<Record, RecordError> {
+fn read(path: &Path, wanted: Option<Wanted<'_>>) -> Result<Record, RecordError> {
     let label = path.display().to_string();
     let refused = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => RecordError::NotFound {
@@ -165,7 +179,7 @@ impl<'a, R: BufRead> Reader<'a, R> {
         }
     }
 
-    fn header(&mut self, wanted: Option<&[&str]>) -> Result<Header, RecordError> {
+    fn header(&mut self, wanted: Option<Wanted<'_>>) -> Result<Header, RecordError> {
         while self.advance()? {
             let text = self.text()?;
             if text.is_empty() {
@@ -182,7 +196,7 @@ impl<'a, R: BufRead> Reader<'a, R> {
         Err(RecordError::Empty { file: self.file() })
     }
 
-    fn record(mut self, name: String, wanted: Option<&[&str]>) -> Result<Record, RecordError> {
+    fn record(mut self, name: String, wanted: Option<Wanted<'_>>) -> Result<Record, RecordError> {
         let header = self.header(wanted)?;
         let mut table = Table::new(&header);
         let mut blanks: Vec<Blank> = Vec::new();

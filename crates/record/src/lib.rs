@@ -31,7 +31,9 @@ mod unit;
 mod write;
 
 pub use channel::{Channel, Conversion};
-pub use csv_read::{MAX_LINE_BYTES, MAX_ROWS, parse_csv, read_csv, read_csv_channels};
+pub use csv_read::{
+    MAX_LINE_BYTES, MAX_ROWS, parse_csv, read_csv, read_csv_channels, read_csv_some,
+};
 pub use error::{Place, RecordError};
 pub use quality::{Defect, Edge, QualityFinding, quality};
 pub use record::{MIN_ROWS, Record};

@@ -58,9 +58,11 @@ impl OutputPlan {
     }
 }
 
+/// `carried` says of each element whether it is a member between its nodes.
 pub(crate) fn output_plans(
     model: &Model,
     elements: &[Element],
+    carried: &[bool],
 ) -> Result<Vec<OutputPlan>, ModelError> {
     let mut plans = Vec::with_capacity(model.outputs.len());
     for output in &model.outputs {
@@ -83,7 +85,9 @@ pub(crate) fn output_plans(
             .iter()
             .filter(|d| same_pair(&d.between, &pair));
         let joined = elements.iter().enumerate().filter_map(|(i, element)| {
-            if (element.a, element.b) == (a, b) {
+            if !carried[i] {
+                None
+            } else if (element.a, element.b) == (a, b) {
                 Some((i, 1.0))
             } else if (element.a, element.b) == (b, a) {
                 Some((i, -1.0))

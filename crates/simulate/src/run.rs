@@ -100,14 +100,18 @@ impl Run {
     }
 }
 
-fn input_quantity(kind: InputKind) -> Quantity {
+/// What an input without a gain must measure.
+#[must_use]
+pub fn input_quantity(kind: InputKind) -> Quantity {
     match kind {
         InputKind::Force => Quantity::Force,
         InputKind::Displacement => Quantity::Displacement,
     }
 }
 
-fn output_quantity(kind: OutputKind) -> Quantity {
+/// What an output without a gain must measure.
+#[must_use]
+pub fn output_quantity(kind: OutputKind) -> Quantity {
     match kind {
         OutputKind::Displacement => Quantity::Displacement,
         OutputKind::Velocity => Quantity::Velocity,

@@ -52,6 +52,7 @@ impl Simulator {
         let mut model = nominal.clone();
         let mut laws = Vec::new();
         let (mut input_maps, mut output_maps) = (Vec::new(), Vec::new());
+        let mut sampling_maps = Vec::new();
         for placed in effects {
             match (placed.action(), &placed.at) {
                 (Action::Model(change), at) => change(&mut model, at),
@@ -64,10 +65,18 @@ impl Simulator {
                     let of = model.outputs.iter().position(|o| &o.channel == channel);
                     output_maps.extend(of.map(|i| (i, map)));
                 }
-                (Action::Input(_) | Action::Output(_), _) => {}
+                (Action::Sampling(map), Location::Channel(channel)) => {
+                    let of = model.outputs.iter().position(|o| &o.channel == channel);
+                    sampling_maps.extend(of.map(|i| (i, map)));
+                }
+                (Action::Input(_) | Action::Output(_) | Action::Sampling(_), _) => {}
             }
         }
+        // What happens while sampling comes after what happens before, however they are listed.
+        output_maps.extend(sampling_maps);
         let mut elements = Vec::new();
+        // Gravity and forces on a mass push from outside: no member carries them.
+        let mut carried = Vec::new();
         for pendulum in &model.pendulums {
             let [a, b] = ends(&model, &Location::Mass(pendulum.at.clone()))?;
             elements.push(Element {
@@ -75,13 +84,15 @@ impl Simulator {
                 b,
                 law: Box::new(Gravity(pendulum.value)),
             });
+            carried.push(false);
         }
         for (at, law) in laws {
             let [a, b] = ends(&model, at)?;
             elements.push(Element { a, b, law });
+            carried.push(matches!(at, Location::Between(_)));
         }
         Ok(Simulator {
-            outputs: output_plans(&model, &elements)?,
+            outputs: output_plans(&model, &elements, &carried)?,
             loads: model.load_vector(),
             substeps: if elements.is_empty() {
                 1

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use simgap_model::{Model, damped_modes};
+use simgap_model::{GROUND, Model, Spring, damped_modes};
 
 use crate::{Run, SimulateError};
 
@@ -23,7 +23,7 @@ const MOST_SUBSTEPS: usize = 16;
 /// # Errors
 /// [`SimulateError::Model`] when the model has no modes because M is singular.
 pub fn substeps_for(model: &Model, runs: &[Run]) -> Result<usize, SimulateError> {
-    let modes = damped_modes(&model.matrices()?)?;
+    let modes = damped_modes(&with_gravity(model).matrices()?)?;
     let mut substeps = 1;
     for run in runs {
         let step = run.time_step_s;
@@ -41,6 +41,19 @@ pub fn substeps_for(model: &Model, runs: &[Run]) -> Result<usize, SimulateError>
         substeps = substeps.max((phase / LARGEST_PHASE_STEP).ceil() as usize);
     }
     Ok(substeps.clamp(1, MOST_SUBSTEPS))
+}
+
+/// The model with each pendulum as the spring it is about its rest: that is its natural frequency.
+fn with_gravity(model: &Model) -> Model {
+    let mut model = model.clone();
+    for (i, pendulum) in model.pendulums.iter().enumerate() {
+        model.springs.push(Spring {
+            name: format!("pendulum {}", i + 1),
+            between: [pendulum.at.clone(), GROUND.into()],
+            stiffness: pendulum.value.abs(),
+        });
+    }
+    model
 }
 
 fn rms_frequency(signal: &[f64], step: f64) -> f64 {
