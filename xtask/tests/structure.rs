@@ -6,13 +6,31 @@ use std::path::Path;
 
 use xtask::tidy::{self, Rule, Workspace};
 
+fn workspace() -> Workspace {
+    Workspace::load().unwrap_or_else(|error| panic!("{error}"))
+}
+
 fn assert_clean(rule: Rule) {
-    let workspace = Workspace::load().unwrap_or_else(|error| panic!("{error}"));
-    // Rules on nothing would pass.
-    assert!(workspace.packages.len() >= 15 && workspace.sources.len() >= 100);
-    assert!(!workspace.kinds.is_empty());
+    let workspace = workspace();
     let findings: Vec<String> = rule(&workspace).iter().map(ToString::to_string).collect();
     assert!(findings.is_empty(), "\n{}", findings.join("\n"));
+}
+
+#[test]
+fn verify_the_rules_see_the_workspace() {
+    // Rules on nothing would pass.
+    let workspace = workspace();
+    assert!(workspace.packages.len() >= 15 && workspace.sources.len() >= 100);
+    assert!(workspace.kinds.len() >= 16 && !workspace.references.is_empty());
+    let has = |names: &[String], name: &str| names.iter().any(|found| found == name);
+    let diagnose = workspace.package("simgap-diagnose").unwrap();
+    assert!(has(&diagnose.normal, "simgap-estimate") && diagnose.floor.is_some());
+    assert!(!has(&diagnose.normal, "rayon"));
+    let estimate = workspace.package("simgap-estimate").unwrap();
+    assert!(has(&estimate.other, "simgap-record"));
+    for path in ["crates/model/src/lib.rs", "xtask/tests/structure.rs"] {
+        assert!(workspace.sources.iter().any(|source| source.path == path));
+    }
 }
 
 #[test]
