@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use simgap_record::{
     Channel, MIN_ROWS, Place, Quantity, Record, RecordError, parse_csv, read_csv,
-    read_csv_channels, write_csv_atomic, write_text_atomic,
+    read_csv_channels, read_csv_some, write_csv_atomic, write_text_atomic,
 };
 
 /// A double has 52 bits of mantissa; a mean of steps is wrong by a few roundings of the stamps.
@@ -114,6 +114,10 @@ fn verify_ignored_columns_may_hold_anything() {
     assert_eq!(record.require("y1").unwrap().values[4], -4.0);
     let missing = read_csv_channels(&path, &["y1", "y2"]).unwrap_err();
     assert!(matches!(missing, RecordError::MissingColumn { wanted, .. } if wanted == "y2"));
+    // A column that is only welcome may be missing; one that is there is read.
+    let some = read_csv_some(&path, &["y1"], &["y2", "u"]).unwrap();
+    assert_eq!(some.channel("y2"), None);
+    assert_eq!(some.channels().len(), 2);
 }
 
 #[test]
