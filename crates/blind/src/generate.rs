@@ -1,7 +1,6 @@
 //! From a seed and a recipe to a case.
 
 use simgap_effects::{Action, Effect, Family, Placed, find};
-use simgap_model::Location;
 use simgap_record::{Channel, Record};
 
 use crate::bench::Bench;
@@ -273,19 +272,26 @@ fn truth(recipe: &Recipe, draft: &Draft) -> Truth {
     }
 }
 
-/// Equivalences hold on a linear plant: a nonlinear force beside the effect breaks them.
+/// Equivalences on the plant as the other effects leave it: a missing spring beside the effect holds
+/// the plant, a nonlinear force breaks every equivalence.
 fn equivalents_beside_others(draft: &Draft, i: usize) -> Vec<crate::Equivalent> {
-    let nonlinear = |placed: &Placed| {
-        matches!(placed.action(), Action::Force(_))
-            && !["constant_force", "harmonic_force"].contains(&placed.effect.kind())
-    };
-    let beside = draft.effects.iter().enumerate().filter(|&(j, _)| j != i);
-    if beside.map(|(_, placed)| placed).any(nonlinear) {
-        return vec![];
+    let mut model = draft.plant.model.clone();
+    for (j, placed) in draft.effects.iter().enumerate() {
+        if j == i {
+            continue;
+        }
+        match placed.action() {
+            Action::Model(change) => change(&mut model, &placed.at),
+            Action::Force(_)
+                if !["constant_force", "harmonic_force"].contains(&placed.effect.kind()) =>
+            {
+                return vec![];
+            }
+            _ => {}
+        }
     }
     let placed = &draft.effects[i];
-    let at: &Location = &placed.at;
-    equivalents(placed.effect.kind(), at, &draft.plant.model)
+    equivalents(placed.effect.kind(), &placed.at, &model)
 }
 
 #[cfg(test)]

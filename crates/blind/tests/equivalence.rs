@@ -184,3 +184,25 @@ fn verify_truth_carries_the_equivalents_of_its_effects() {
     assert_eq!(case.truth.status, Status::Parameters);
     assert_eq!(case.truth.equivalents[0][0].kind, "sensor_gain");
 }
+
+#[test]
+fn verify_an_effect_beside_changes_what_is_equivalent() {
+    // A free axis keeps a force and a bias apart; the spring it lacked makes them one.
+    let recipe = Recipe::Pair("constant_force".into(), "linear_stiffness".into());
+    let case = (0..40)
+        .map(|n| generate(21, n, &recipe).unwrap())
+        .find(|case| {
+            case.model.name == "axis"
+                && case.model.outputs[0].kind == simgap_model::OutputKind::Displacement
+        })
+        .unwrap();
+    assert_eq!(case.truth.equivalents[0][0].kind, "sensor_bias");
+    assert!(
+        equivalents(
+            "constant_force",
+            &Location::Mass("carriage".into()),
+            &case.model
+        )
+        .is_empty()
+    );
+}
