@@ -15,9 +15,13 @@ use crate::{input, say};
 /// Folder of the predictions, inside the folder of the results.
 const PREDICTIONS: &str = "predictions";
 
+/// More threads than any machine has cores for; starting a hundred thousand takes minutes.
+const MOST_JOBS: usize = 1024;
+
 pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
-    if args.jobs == Some(0) {
-        return Err(CliError::Jobs { found: 0 });
+    if let Some(found) = args.jobs.filter(|jobs| !(1..=MOST_JOBS).contains(jobs)) {
+        let most = MOST_JOBS;
+        return Err(CliError::Jobs { found, most });
     }
     let judged = if args.check.is_empty() {
         &args.train

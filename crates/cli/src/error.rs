@@ -40,8 +40,8 @@ pub(crate) enum CliError {
     FolderInPlace { path: PathBuf },
     #[error("{}: is an input of this very command, needed is another file to write to", .path.display())]
     OverInput { path: PathBuf },
-    #[error("--jobs is {found}, needed is 1 or more")]
-    Jobs { found: usize },
+    #[error("--jobs is {found}, needed is 1 to {most}")]
+    Jobs { found: usize, most: usize },
     #[error("the threads could not be started ({found}), needed is a smaller --jobs")]
     Threads { found: String },
     #[error("the result could not be written as JSON ({found})")]
