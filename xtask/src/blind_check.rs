@@ -17,7 +17,7 @@ use simgap_model::EffectEntry;
 use thiserror::Error;
 
 /// Cases of the short run.
-const SHORT_CASES: usize = 16;
+const SHORT_CASES: usize = 12;
 /// Seed of the short run: neither one to tune with nor one to report.
 const SHORT_SEED: u64 = 5000;
 
@@ -194,12 +194,12 @@ struct Floors {
 }
 
 /// Measured on seeds 1 and 2 (180 cases): placed 0.82 and 0.95, false alarms 0.1 and 0, Brier score
-/// 0.25 and 0.18. Sixteen effects at a rate of 0.85 scatter by 0.09, so 0.6 is nearly three of that
-/// below; with two cases of noise one may be an alarm.
+/// 0.22 and 0.18. Ten effects at a rate of 0.85 scatter by 0.11, so 0.5 is three of that below; with
+/// two cases of noise one may be an alarm.
 const FLOORS: Floors = Floors {
-    placed: 0.6,
+    placed: 0.5,
     false_alarms: 0.5,
-    brier: 0.35,
+    brier: 0.4,
 };
 
 fn below_floors(totals: &Totals, failed: usize) -> Vec<String> {
