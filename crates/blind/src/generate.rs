@@ -355,8 +355,9 @@ mod tests {
     fn verify_a_force_that_leaves_no_trace_is_not_drawn() -> Result<(), BlindError> {
         // A constant force only shifts the rest position: accelerometers on a sprung plant do not
         // see it, however the plant started.
-        for number in 0..6 {
-            let case = generate(12, number, &Recipe::Kind("constant_force".into()))?;
+        // Number 9 of seed 1 draws such a plant first, with small parameter errors.
+        for (seed, number) in [(1, 9), (12, 0), (12, 1)] {
+            let case = generate(seed, number, &Recipe::Kind("constant_force".into()))?;
             let model = &case.model;
             let held = model
                 .static_deflection(&vec![1.0; model.dof_count()])
