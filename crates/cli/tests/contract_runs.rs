@@ -219,7 +219,7 @@ fn verify_without_check_the_last_third_is_held_back() {
     }
 }
 
-/// What was not learnt from has no say: with the held-back third made nonsense, the corrected
+/// What was not learnt from has no say: with a hum on the held-back third, the corrected
 /// model stays the same to the last digit.
 #[test]
 fn verify_nothing_is_fitted_to_what_is_held_back() {
@@ -231,7 +231,7 @@ fn verify_nothing_is_fitted_to_what_is_held_back() {
         match line.rsplit_once(',') {
             Some((rest, y)) if k > kept => {
                 let y: f64 = y.parse().unwrap();
-                spoilt += &format!("{rest},{}\n", 0.3 * y + 0.002 * (k as f64).cos());
+                spoilt += &format!("{rest},{}\n", y + 1e-4 * (k as f64).cos());
             }
             _ => spoilt += &format!("{line}\n"),
         }
@@ -244,16 +244,9 @@ fn verify_nothing_is_fitted_to_what_is_held_back() {
         let (train, out) = (format!("{case}/A.csv"), format!("{case}/out"));
         bench.done(&["diagnose", "model.toml", "--train", &train, "--out", &out]);
     }
-    let effects = |case: &str| -> Value {
-        diagnosis(&bench, &format!("{case}/out"))["verdict"]["effects"].clone()
-    };
-    let (good, spoilt) = (effects("good"), effects("spoilt"));
-    assert!(!list(&good).is_empty());
-    // Where the check record shows that the answer explains little of it, nothing is named.
-    assert!(
-        spoilt == good || list(&spoilt).is_empty(),
-        "{good}\n{spoilt}"
-    );
+    let model = |case: &str| bench.read(&format!("{case}/out/corrected.toml"));
+    assert!(model("good").contains("coulomb_friction"));
+    assert_eq!(model("good"), model("spoilt"));
     let gap = |case: &str| number(&diagnosis(&bench, &format!("{case}/out"))["gap"]["corrected"]);
     assert!(
         gap("spoilt") > 2.0 * gap("good"),
