@@ -1,5 +1,5 @@
 //! Linear plants against closed forms: moving bases, force and acceleration outputs, loads.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod support;
 

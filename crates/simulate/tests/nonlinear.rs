@@ -1,5 +1,5 @@
 //! Nonlinear forces on the march, against closed forms.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod support;
 

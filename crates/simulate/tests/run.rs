@@ -1,5 +1,5 @@
 //! From a record to a run: units, gains, missing columns, stretches.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod support;
 
