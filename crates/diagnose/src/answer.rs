@@ -13,8 +13,10 @@ use crate::gap::{closed, predict, total};
 use crate::pipeline::Answer;
 use crate::search::name;
 use crate::structure::describe;
-use crate::verdict::{CLOSES, INDISTINGUISHABLE, Judged};
+use crate::verdict::{CLOSES, CLOSES_BEYOND_RECALIBRATION, INDISTINGUISHABLE, Judged, STANDS_OUT};
 
+/// A corrected gap below this share of the motion is good enough for any model.
+const TRIFLE: f64 = 0.01;
 /// Single effects whose gap on the check records is computed.
 const SHOWN: usize = 12;
 
@@ -68,34 +70,31 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
 
 /// Whether structure well above the noise is left that the set does not explain.
 fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
-    let left = (gap.corrected.powi(2) - gap.noise_floor.powi(2))
-        .max(0.0)
-        .sqrt();
     // What remains must stand out of the noise, and not be a trifle of the motion itself.
-    let stands_out = left > gap.noise_floor && left > 0.01;
-    if !stands_out {
+    if gap.corrected < STANDS_OUT * gap.noise_floor || gap.corrected < TRIFLE {
         return false;
     }
-    let on_train = {
-        let std = train.output_std();
-        let share = |variance: &[f64]| -> f64 {
-            let each: Vec<f64> = variance
-                .iter()
-                .zip(&std)
-                .map(|(v, s)| v.sqrt() / s)
-                .collect();
-            total(&each)
-        };
-        closed(
-            share(&answer.nominal.variance),
-            share(&answer.set.fit.variance),
-            gap.noise_floor,
-        )
-    };
-    match status {
-        Status::None => true,
-        _ => on_train.max(gap.closed) < CLOSES,
+    if status == Status::None {
+        return true;
     }
+    let std = train.output_std();
+    let size = |variance: &[f64]| -> f64 {
+        let each: Vec<f64> = variance
+            .iter()
+            .zip(&std)
+            .map(|(v, s)| v.sqrt() / s)
+            .collect();
+        total(&each)
+    };
+    let floor = gap.noise_floor;
+    let learnt = closed(
+        size(&answer.nominal.variance),
+        size(&answer.estimate.variance),
+        floor,
+    );
+    let beyond = closed(gap.recalibrated, gap.corrected, floor);
+    learnt.max(gap.closed) < CLOSES
+        || (status == Status::Effect && beyond < CLOSES_BEYOND_RECALIBRATION)
 }
 
 fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {

@@ -11,7 +11,7 @@ use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
 use crate::search::{Hypothesis, Search, name};
-use crate::verdict::{Judged, judge, nominal_set, prune};
+use crate::verdict::{Judged, judge, prune};
 use crate::{DiagnoseError, answer, locate};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
@@ -178,6 +178,7 @@ fn search(
     let colour = |fit: &Fit| Weights {
         independence: independence(fit, channels),
         converged: SEARCH_CONVERGED,
+        keep_nuisance: true,
         ..Weights::independent(channels)
     };
     let short = train.with_runs(excerpts(&train.runs));
@@ -216,9 +217,21 @@ fn search(
     let best = finalists.into_iter().next().unwrap_or(base);
     let mut set = prune(&search, best)?;
     if set.effects().is_empty() {
-        set = nominal_set(&search, &first.initial)?;
+        // Nothing beyond small errors of the nominal parameters: with those held exactly, is there
+        // a cause after all?
+        progress("exact parameters");
+        let exact = search.fit(&Start {
+            nominal: vec![],
+            ..first.clone()
+        })?;
+        let best = search
+            .run(&exact, &|_| {})?
+            .into_iter()
+            .next()
+            .unwrap_or(exact);
+        set = prune(&search, best)?;
     }
-    let judged = judge(&search, &set, RIVALS)?;
+    let (set, judged) = judge(&search, set, RIVALS)?;
 
     // The answer, on all samples.
     progress("final fit");
@@ -226,6 +239,7 @@ fn search(
     start.initial = nominal.estimate.initial.clone();
     let weights = Weights {
         converged: plain.converged,
+        keep_nuisance: false,
         ..search.weights.clone()
     };
     let estimate = fit(train, &start, &weights)?;

@@ -4,10 +4,12 @@
 //! until a constant force is in the model too. So several sets of each size survive, every set is
 //! fitted on the full nonlinear simulation, and the next size starts from each survivor.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 use simgap_effects::{Family, Placed, SiteScale};
 use simgap_estimate::{
-    Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
+    Base, Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
 };
 
 use crate::evidence::{effective_samples, evidence};
@@ -16,6 +18,8 @@ use crate::evidence::{effective_samples, evidence};
 const SURVIVORS: [usize; 2] = [6, 3];
 /// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
 const FITTED: [usize; 3] = [18, 6, 4];
+/// Prior of [`Weights::independent`] on nominal parameters.
+const NOMINAL_PRIOR: f64 = 0.04;
 /// Scores below this cannot reach the threshold of evidence after fitting.
 const HOPELESS: f64 = 1.0;
 
@@ -38,8 +42,14 @@ impl Hypothesis {
         key
     }
 
-    pub(crate) fn has(&self, candidate: &Candidate) -> bool {
-        self.effects().iter().any(|p| same(p, candidate))
+    /// Whether a candidate makes no sense beside the effects of the set: it is one of them, or one
+    /// contains the other at the same place.
+    fn rules_out(&self, candidate: &Candidate) -> bool {
+        self.effects().iter().any(|p| {
+            let related = candidate.effect.contains().contains(&p.effect.kind())
+                || p.effect.contains().contains(&candidate.effect.kind());
+            same(p, candidate) || (related && p.at == candidate.at)
+        })
     }
 }
 
@@ -95,55 +105,91 @@ impl<'a> Search<'a> {
 
     /// Fits a set from a start.
     pub(crate) fn fit(&self, start: &Start) -> Result<Hypothesis, EstimateError> {
-        let fit = fit(self.problem, start, &self.weights)?;
-        let evidence = evidence(&fit, self.effective_samples);
-        Ok(Hypothesis { fit, evidence })
+        Ok(self.hypothesis(fit(self.problem, start, &self.weights)?))
     }
 
-    /// Every set worth a fit with one more effect than `base`, best first.
+    fn hypothesis(&self, fit: Fit) -> Hypothesis {
+        let evidence = evidence(&fit, self.effective_samples);
+        Hypothesis { fit, evidence }
+    }
+
+    /// Every set worth a fit with one more effect than `base`, and every set in which an effect of
+    /// `base` has grown into one that contains it; best first.
     pub(crate) fn extend(
         &self,
         base: &Hypothesis,
         most: usize,
     ) -> Result<Vec<Hypothesis>, EstimateError> {
-        let scores = self.scores(base)?;
-        let starts: Vec<Start> = self
+        let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
+        let scores = self.scores(base, &linear)?;
+        let mut starts: Vec<Start> = self
             .pick(scores, most, base.effects().is_empty())
             .into_iter()
             .map(|score| add(&base.fit.estimate, score.start))
             .collect();
+        for index in 0..base.effects().len() {
+            starts.extend(self.grown(base, index));
+        }
+        self.fit_all(&starts, &linear)
+    }
+
+    /// The sets in which one effect has grown into one that contains it.
+    pub(crate) fn grow(
+        &self,
+        base: &Hypothesis,
+        index: usize,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        let starts = self.grown(base, index);
+        if starts.is_empty() {
+            return Ok(vec![]);
+        }
+        let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
+        self.fit_all(&starts, &linear)
+    }
+
+    fn grown(&self, base: &Hypothesis, index: usize) -> Vec<Start> {
+        let old = &base.effects()[index];
+        let larger = self.candidates.iter().filter(|(candidate, _)| {
+            candidate.at == old.at && candidate.effect.contains().contains(&old.effect.kind())
+        });
+        larger
+            .flat_map(|(candidate, scale)| {
+                let shapes = candidate.effect.grown_from(&old.values, scale);
+                shapes.into_iter().map(|values| {
+                    let mut start = base.fit.estimate.clone();
+                    start.effects[index] = Placed {
+                        effect: candidate.effect,
+                        at: old.at.clone(),
+                        values,
+                    };
+                    start
+                })
+            })
+            .collect()
+    }
+
+    /// Fits sets; of the same set from several starts the best stays. Best first.
+    fn fit_all(&self, starts: &[Start], base: &Base<'_>) -> Result<Vec<Hypothesis>, EstimateError> {
         let mut fitted = starts
             .par_iter()
-            .map(|start| self.fit(start))
-            .collect::<Result<Vec<_>, _>>()?;
+            .map(|start| Ok(self.hypothesis(base.fit(start, &self.weights)?)))
+            .collect::<Result<Vec<_>, EstimateError>>()?;
         fitted.retain(|hypothesis| hypothesis.fit.objective.is_finite());
         sort(&mut fitted);
-        // The same effect from several shapes: the best stays.
-        let mut seen = Vec::new();
-        fitted.retain(|hypothesis| {
-            let key = hypothesis.key();
-            let fresh = !seen.contains(&key);
-            if fresh {
-                seen.push(key);
-            }
-            fresh
-        });
+        unique(&mut fitted);
         Ok(fitted)
     }
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.
-    fn scores(&self, base: &Hypothesis) -> Result<Vec<Score>, EstimateError> {
-        let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
+    fn scores(&self, base: &Hypothesis, linear: &Base<'_>) -> Result<Vec<Score>, EstimateError> {
         let scored = self
             .candidates
             .par_iter()
-            .filter(|(candidate, _)| !base.has(candidate))
-            .map(|(candidate, scale)| {
-                if candidate.effect.family() == Family::NominalParameter {
-                    // Already adjustable under its prior: its score starts from there.
-                    return Ok(nominal_score(base, candidate));
-                }
-                score(&linear, candidate, scale)
+            .filter(|(candidate, _)| !base.rules_out(candidate))
+            .map(|(candidate, scale)| match prior_score(base, candidate) {
+                // Already adjustable under its prior: its score starts from there.
+                Some(score) => Ok(vec![score]),
+                None => score(linear, candidate, scale),
             })
             .collect::<Result<Vec<_>, EstimateError>>()?;
         let mut scores: Vec<Score> = scored.into_iter().flatten().collect();
@@ -200,6 +246,7 @@ impl<'a> Search<'a> {
             front = next;
         }
         sort(&mut pool);
+        unique(&mut pool);
         Ok(pool)
     }
 }
@@ -212,6 +259,12 @@ pub(crate) fn sort(hypotheses: &mut [Hypothesis]) {
     });
 }
 
+/// Keeps the first of each set.
+pub(crate) fn unique(hypotheses: &mut Vec<Hypothesis>) {
+    let mut seen = BTreeSet::new();
+    hypotheses.retain(|hypothesis| seen.insert(hypothesis.key()));
+}
+
 /// A start with one more effect. A nominal parameter that becomes an effect loses its prior.
 pub(crate) fn add(start: &Start, effect: Placed) -> Start {
     let mut next = start.clone();
@@ -220,11 +273,12 @@ pub(crate) fn add(start: &Start, effect: Placed) -> Start {
     next
 }
 
-/// A start without one of its effects. A nominal parameter gets its prior back.
+/// A start without one of its effects. A nominal parameter gets its prior back, unless nominal
+/// parameters are held exactly.
 pub(crate) fn remove(start: &Start, index: usize) -> Start {
     let mut next = start.clone();
     let mut removed = next.effects.remove(index);
-    if removed.effect.family() == Family::NominalParameter {
+    if removed.effect.family() == Family::NominalParameter && !next.nominal.is_empty() {
         removed.values = neutral(&removed);
         next.nominal.push(removed);
     }
@@ -240,14 +294,22 @@ fn neutral(placed: &Placed) -> Vec<f64> {
         .collect()
 }
 
-fn nominal_score(base: &Hypothesis, candidate: &Candidate) -> Vec<Score> {
-    let nominal = &base.fit.estimate.nominal;
-    nominal
+/// Score of a nominal parameter that the fit already adjusts under its prior: freed, it gains what
+/// the prior holds back, and about as much again in what it can then explain.
+fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Score> {
+    let placed = base
+        .fit
+        .estimate
+        .nominal
         .iter()
-        .filter(|placed| same(placed, candidate))
-        .map(|placed| Score {
-            gain: f64::MAX,
-            start: placed.clone(),
-        })
-        .collect()
+        .find(|placed| same(placed, candidate))?;
+    let pull: f64 = placed
+        .values
+        .iter()
+        .map(|v| ((v - 1.0) / NOMINAL_PRIOR).powi(2))
+        .sum();
+    Some(Score {
+        gain: pull,
+        start: placed.clone(),
+    })
 }

@@ -1,12 +1,12 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Family, Placed};
+use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states};
 use simgap_simulate::Run;
 
 use crate::evidence::probabilities;
-use crate::search::{Hypothesis, Search, remove, sort};
+use crate::search::{Hypothesis, Search, name, remove, sort, unique};
 
 /// Evidence an effect must bring beyond its own penalty. Calibrated on generated cases so that
 /// noise alone earns an effect in fewer than one case in twenty.
@@ -14,10 +14,22 @@ pub(crate) const EARNS: f64 = 6.0;
 /// Smallest relative fall of the squared discrepancy that counts as an effect: below it the
 /// integration of the nominal model is no better.
 pub(crate) const RELEVANT: f64 = 0.02;
+/// Smallest motion of an output, relative to its standard deviation, that counts as an effect:
+/// inputs known only at the samples leave the prediction uncertain by about a third of it.
+pub(crate) const MOVES: f64 = 3e-3;
 /// A rival whose evidence is this close cannot be told from the named effect.
 pub(crate) const INDISTINGUISHABLE: f64 = 4.0;
 /// Share of the gap (above the noise floor) that a verdict must close, else the cause is unknown.
 pub(crate) const CLOSES: f64 = 0.6;
+/// Share of what recalibration leaves that named effects must close, else the cause is unknown: a
+/// familiar effect in the place of a foreign one leaves more.
+pub(crate) const CLOSES_BEYOND_RECALIBRATION: f64 = 0.75;
+/// A residual below this multiple of the noise floor does not stand out of the noise.
+pub(crate) const STANDS_OUT: f64 = 2.0;
+/// A rival must lead by this much to take a place: less is the accuracy of the fits.
+const TIE: f64 = 0.5;
+/// Swaps before the set is taken as it stands.
+const MOST_SWAPS: usize = 3;
 /// Share of the training records that the confirmation learns from.
 const LEARNT: f64 = 0.7;
 /// A further effect must lower the squared discrepancy on samples it was not fitted to by this much.
@@ -52,6 +64,19 @@ fn relative(variance: &[f64], reference: &[f64]) -> f64 {
     ratios.sum::<f64>() / variance.len().max(1) as f64
 }
 
+/// Whether an effect moves an output by more than the simulation itself may be off: `larger` has
+/// it, `smaller` lacks it.
+fn relevant(problem: &Problem, larger: &Fit, smaller: &Fit) -> bool {
+    let moved = smaller
+        .variance
+        .iter()
+        .zip(&larger.variance)
+        .zip(problem.output_std())
+        .map(|((poorer, better), std)| (poorer - better).max(0.0).sqrt() / std)
+        .fold(0.0, f64::max);
+    moved > MOVES && rise(smaller, larger) > RELEVANT
+}
+
 /// How much the squared discrepancy rises, relative, when going from one fit to a poorer one.
 pub(crate) fn rise(poorer: &Fit, better: &Fit) -> f64 {
     // The channel that profits most decides: an effect may show on one channel alone.
@@ -83,7 +108,7 @@ pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, 
         let mut weakest: Option<Hypothesis> = None;
         for subset in smaller {
             let earns = set.evidence - subset.evidence > EARNS
-                && rise(&subset.fit, &set.fit) > RELEVANT
+                && relevant(search.problem, &set.fit, &subset.fit)
                 && (set.effects().len() < 2 || confirmed(search, &set, &subset)?);
             if !earns
                 && weakest
@@ -166,82 +191,78 @@ fn held_back_variance(
     Ok(fit_initial_states(kept, &effects, weights)?.variance)
 }
 
-/// Finds the rivals of each effect of a set and weighs them.
+/// Finds the rivals of each effect of a set and weighs them. Where a rival turns out better than
+/// the set, it takes its place.
 pub(crate) fn judge(
+    search: &Search<'_>,
+    set: Hypothesis,
+    most_rivals: usize,
+) -> Result<(Hypothesis, Vec<Judged>), EstimateError> {
+    let mut set = set;
+    for _ in 0..MOST_SWAPS {
+        let (judged, better) = judge_once(search, &set, most_rivals)?;
+        match better {
+            Some(better) => set = prune(search, better)?,
+            None => return Ok((set, judged)),
+        }
+    }
+    let (judged, _) = judge_once(search, &set, most_rivals)?;
+    Ok((set, judged))
+}
+
+/// Rivals of every effect, and the best of them where it beats the set.
+fn judge_once(
     search: &Search<'_>,
     set: &Hypothesis,
     most_rivals: usize,
-) -> Result<Vec<Judged>, EstimateError> {
-    (0..set.effects().len())
-        .map(|i| {
-            let placed = set.effects()[i].clone();
-            let subset = without(search, set, i)?;
-            let mut rivals = search.extend(&subset, most_rivals)?;
-            rivals.retain(|rival| rival.key() != set.key());
-            sort(&mut rivals);
-            let mut evidence = vec![set.evidence, subset.evidence];
-            evidence.extend(rivals.iter().map(|rival| rival.evidence));
-            let swaps = rivals
-                .iter()
-                .filter_map(|rival| {
-                    let placed = rival.effects().last()?.clone();
-                    Some(Swap {
-                        placed,
-                        evidence: rival.evidence,
-                    })
-                })
-                .collect();
-            Ok(Judged {
-                placed,
-                probability: probabilities(&evidence)[0],
-                worth: set.evidence - subset.evidence,
-                relevance: rise(&subset.fit, &set.fit),
-                swaps,
-            })
-        })
-        .collect()
-}
-
-/// The smallest set of nominal parameters that explains the gap, with all others exactly nominal.
-/// Empty when none earns its place against the model as given.
-pub(crate) fn nominal_set(
-    search: &Search<'_>,
-    initial: &[Vec<f64>],
-) -> Result<Hypothesis, EstimateError> {
-    let start = Start {
-        effects: vec![],
-        nominal: vec![],
-        initial: initial.to_vec(),
-    };
-    let mut set = search.fit(&start)?;
-    loop {
-        let starts: Vec<Start> = search
-            .candidates
+) -> Result<(Vec<Judged>, Option<Hypothesis>), EstimateError> {
+    let mut better: Option<Hypothesis> = None;
+    let mut list = Vec::new();
+    for i in 0..set.effects().len() {
+        let subset = without(search, set, i)?;
+        let mut rivals = search.extend(&subset, most_rivals)?;
+        rivals.extend(search.grow(set, i)?);
+        rivals.retain(|rival| rival.key() != set.key());
+        sort(&mut rivals);
+        unique(&mut rivals);
+        let mut evidence = vec![set.evidence, subset.evidence];
+        evidence.extend(rivals.iter().map(|rival| rival.evidence));
+        let swaps = rivals
             .iter()
-            .map(|(candidate, _)| candidate)
-            .filter(|c| c.effect.family() == Family::NominalParameter && !set.has(c))
-            .map(|candidate| {
-                let mut next = set.fit.estimate.clone();
-                next.effects.push(Placed {
-                    effect: candidate.effect,
-                    at: candidate.at.clone(),
-                    values: vec![1.0],
-                });
-                next
+            .filter_map(|rival| {
+                let placed = replacement(set, rival)?.clone();
+                Some(Swap {
+                    placed,
+                    evidence: rival.evidence,
+                })
             })
             .collect();
-        let mut larger = starts
-            .par_iter()
-            .map(|start| search.fit(start))
-            .collect::<Result<Vec<_>, _>>()?;
-        sort(&mut larger);
-        match larger.into_iter().next() {
-            Some(best)
-                if best.evidence - set.evidence > EARNS && rise(&set.fit, &best.fit) > RELEVANT =>
-            {
-                set = best;
-            }
-            _ => return Ok(set),
+        list.push(Judged {
+            placed: set.effects()[i].clone(),
+            probability: probabilities(&evidence)[0],
+            worth: set.evidence - subset.evidence,
+            relevance: rise(&subset.fit, &set.fit),
+            swaps,
+        });
+        let lead = better
+            .as_ref()
+            .map_or(set.evidence + TIE, |known| known.evidence);
+        if let Some(best) = rivals
+            .into_iter()
+            .next()
+            .filter(|best| best.evidence > lead)
+        {
+            better = Some(best);
         }
     }
+    Ok((list, better))
+}
+
+/// The effect of a rival set that the set lacks.
+fn replacement<'a>(set: &Hypothesis, rival: &'a Hypothesis) -> Option<&'a Placed> {
+    let key = set.key();
+    rival
+        .effects()
+        .iter()
+        .find(|placed| !key.contains(&name(placed)))
 }

@@ -82,8 +82,10 @@ pub enum Action {
     Force(Box<dyn ForceLaw>),
     /// Changes an input before it reaches the plant.
     Input(Box<dyn SignalMap>),
-    /// Changes an output on its way into the record.
+    /// Changes an output before it is sampled: sensor, filter, cable.
     Output(Box<dyn SignalMap>),
+    /// Changes an output as it is sampled and stored; acts after every [`Action::Output`].
+    Sampling(Box<dyn SignalMap>),
 }
 
 /// An entry of the catalogue.
@@ -109,6 +111,24 @@ pub trait Effect: Sync + Send {
     /// Starting values for a fit: one vector or, where the shape matters, several. Each is a small
     /// but visible instance of the effect at this site.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>>;
+
+    /// Kinds that are special cases of this one: at one place only one of them makes sense.
+    fn contains(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Starting values that grow out of the fitted values of a special case ([`Effect::contains`]).
+    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        let _ = (values, scale);
+        vec![]
+    }
+
+    /// Moves values to the nearest physical ones.
+    fn make_physical(&self, values: &mut [f64]) {
+        for (value, parameter) in values.iter_mut().zip(self.parameters()) {
+            *value = value.clamp(parameter.lower, parameter.upper);
+        }
+    }
 
     /// What the effect does with these parameter values (as many as [`Effect::parameters`]).
     fn action(&self, values: &[f64]) -> Action;

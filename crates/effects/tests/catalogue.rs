@@ -28,7 +28,7 @@ fn trace(action: &Action, at: &Location) -> Vec<f64> {
             }
             trace
         }
-        Action::Input(map) | Action::Output(map) => {
+        Action::Input(map) | Action::Output(map) | Action::Sampling(map) => {
             through(map.as_ref(), &signal(), scale().time_step_s)
         }
     }
@@ -39,7 +39,7 @@ fn untouched(action: &Action) -> Vec<f64> {
     match action {
         Action::Model(_) => matrix_entries(&model()),
         Action::Force(_) => vec![0.0; 40],
-        Action::Input(_) | Action::Output(_) => signal(),
+        Action::Input(_) | Action::Output(_) | Action::Sampling(_) => signal(),
     }
 }
 
@@ -226,18 +226,72 @@ fn verify_families_act_where_they_belong() {
             Family::Force | Family::Dynamics => {
                 matches!(action, Action::Model(_) | Action::Force(_))
             }
-            Family::Measurement => matches!(action, Action::Input(_) | Action::Output(_)),
+            Family::Measurement => matches!(
+                action,
+                Action::Input(_) | Action::Output(_) | Action::Sampling(_)
+            ),
         };
         assert!(fits, "{} of {:?}", effect.kind(), effect.family());
         let place = effect.site().place();
         let fits = match action {
             Action::Input(_) => place.starts_with("input"),
-            Action::Output(_) => place.starts_with("channel"),
+            Action::Output(_) | Action::Sampling(_) => place.starts_with("channel"),
             Action::Force(_) | Action::Model(_) => {
                 place.starts_with("between") || place.starts_with("mass")
             }
         };
         assert!(fits, "{} is placed by {place}", effect.kind());
+    }
+}
+
+#[test]
+fn verify_physical_values_stay_and_others_are_moved_inside() {
+    for effect in catalogue() {
+        let kind = effect.kind();
+        for start in effect.starts(&scale()) {
+            let mut values = start.clone();
+            effect.make_physical(&mut values);
+            assert_eq!(values, start, "{kind}");
+        }
+        let mut values = neutral(*effect);
+        effect.make_physical(&mut values);
+        assert_eq!(values, neutral(*effect), "{kind}");
+        for outside in [-1e300, 1e300] {
+            let mut values = vec![outside; effect.parameters().len()];
+            effect.make_physical(&mut values);
+            for (parameter, value) in effect.parameters().iter().zip(&values) {
+                let range = parameter.lower..=parameter.upper;
+                assert!(range.contains(value), "{kind}: {} {value}", parameter.name);
+            }
+            let again = values.clone();
+            effect.make_physical(&mut values);
+            assert_eq!(values, again, "{kind}: moved twice");
+        }
+    }
+}
+
+#[test]
+fn verify_special_cases_are_in_the_catalogue_at_the_same_places() {
+    for effect in catalogue() {
+        for special in effect.contains() {
+            let place = format!("{} contains {special}", effect.kind());
+            let special = simgap_effects::find(special).unwrap_or_else(|| panic!("{place}"));
+            assert_ne!(special.kind(), effect.kind(), "{place}");
+            assert_eq!(special.site(), effect.site(), "{place}");
+            assert!(
+                special.contains().is_empty(),
+                "{place}, which contains more"
+            );
+            let fitted = special.starts(&scale()).swap_remove(0);
+            let grown = effect.grown_from(&fitted, &scale());
+            assert!(!grown.is_empty(), "{place}: nothing grows out of it");
+            for values in grown {
+                assert_eq!(values.len(), effect.parameters().len(), "{place}");
+                let mut physical = values.clone();
+                effect.make_physical(&mut physical);
+                assert_eq!(physical, values, "{place}");
+            }
+        }
     }
 }
 

@@ -117,10 +117,16 @@ fn verify_stribeck_friction() {
 }
 
 #[test]
-fn verify_a_breakaway_below_the_sliding_level_is_plain_friction() {
-    let law = law("stribeck_friction", &[100.0, 40.0, 0.02]);
+fn verify_stribeck_friction_without_a_rise_is_coulomb_friction() {
+    let mut values = [100.0, 40.0, 0.02];
+    effect("stribeck_friction").make_physical(&mut values);
+    assert_eq!(values, [100.0, 100.0, 0.02], "at rest not below sliding");
+    let (stribeck, coulomb) = (
+        law("stribeck_friction", &values),
+        law("coulomb_friction", &values[..1]),
+    );
     for speed in [0.0, 0.01, 0.02, 1.0] {
-        assert_eq!(law.dry_level(speed), Some(100.0));
+        assert_eq!(stribeck.dry_level(speed), coulomb.dry_level(speed));
     }
 }
 

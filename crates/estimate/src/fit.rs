@@ -14,7 +14,7 @@
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
 
 use crate::layout::Layout;
-use crate::linearise::{Linearised, Signals, discrepancies, linearise};
+use crate::linearise::{Linearised, Signals, discrepancies, linearise, refresh};
 use crate::normal::{damped_step, normal_equations, variances};
 use crate::{EstimateError, Problem, Start, Weights};
 
@@ -47,36 +47,77 @@ pub struct Fit {
 /// Two-sided 95 % point of the normal distribution.
 const NORMAL_95: f64 = 1.959_964;
 const MOST_ITERATIONS: usize = 25;
+/// λ of (4) at the start, and how often it is raised before a step is given up.
+const FIRST_DAMPING: f64 = 1e-4;
+const MOST_DAMPINGS: usize = 8;
 
 /// Fits a set of effects, the nominal parameters under their prior, and the initial states.
 ///
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated from the start.
 pub fn fit(problem: &Problem, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
+    fit_with(problem, start, weights, |_, _, _| None)
+}
+
+/// As [`fit`], with sensitivities at the start that are known already: by layout, run and place.
+pub(crate) fn fit_with(
+    problem: &Problem,
+    start: &Start,
+    weights: &Weights,
+    known: impl Fn(&Layout, usize, usize) -> Option<Signals>,
+) -> Result<Fit, EstimateError> {
     let layout = Layout::new(start, &state_scale(problem), weights.nominal_prior);
     let merit = Merit::new(problem, weights);
     let mut theta = layout.pack(start);
-    layout.clamp(&mut theta);
-    let (mut objective, _) = merit.of(&layout, &theta, &discrepancies(problem, &layout, &theta)?);
-    let mut damping = 1e-4;
+    layout.make_physical(&mut theta);
+    let point = |theta: &[f64]| -> Result<Linearised, EstimateError> {
+        let discrepancy = discrepancies(problem, &layout, theta)?;
+        Ok(Linearised {
+            discrepancy,
+            columns: vec![],
+        })
+    };
+    let first = point(&theta)?;
+    let (mut objective, _) = merit.of(&layout, &theta, &first.discrepancy);
+    let mut at = refresh(problem, &layout, &theta, first, |run, place| {
+        known(&layout, run, place)
+    })?;
+    // Whether every sensitivity belongs to this point.
+    let mut exact = !weights.keep_nuisance;
+    let mut damping = FIRST_DAMPING;
     let mut iterations = 0;
-    let mut at = linearise(problem, &layout, &theta)?;
     while iterations < MOST_ITERATIONS {
         iterations += 1;
-        let Some((next, value)) = step(
+        let search = Line {
             problem,
-            &layout,
-            &merit,
-            &theta,
-            objective,
-            &at,
-            &mut damping,
-        ) else {
-            break;
+            layout: &layout,
+            merit: &merit,
         };
-        let gain = objective - value;
-        (theta, objective) = (next, value);
-        at = linearise(problem, &layout, &theta)?;
+        let Some(next) = search.step(&theta, objective, &at, &mut damping) else {
+            if exact {
+                break;
+            }
+            // The kept sensitivities mislead: one more try with all of them fresh.
+            at = linearise(problem, &layout, &theta)?;
+            (exact, damping) = (true, FIRST_DAMPING);
+            continue;
+        };
+        let gain = objective - next.objective;
+        (theta, objective) = (next.theta, next.objective);
+        let here = Linearised {
+            discrepancy: next.discrepancy,
+            columns: vec![],
+        };
+        let mut kept = at.columns;
+        let from = if weights.keep_nuisance {
+            layout.effect_len()
+        } else {
+            usize::MAX
+        };
+        at = refresh(problem, &layout, &theta, here, |run, place| {
+            (place >= from).then(|| std::mem::take(&mut kept[run][place]))
+        })?;
+        exact = !weights.keep_nuisance;
         if gain < weights.converged {
             break;
         }
@@ -84,43 +125,62 @@ pub fn fit(problem: &Problem, start: &Start, weights: &Weights) -> Result<Fit, E
     Ok(finish(&layout, &merit, &theta, at, iterations))
 }
 
-/// One accepted step of (4), or `None` when no damping finds an improvement.
-fn step(
-    problem: &Problem,
-    layout: &Layout,
-    merit: &Merit,
-    theta: &[f64],
+/// An accepted step.
+struct Next {
+    theta: Vec<f64>,
     objective: f64,
-    at: &Linearised,
-    damping: &mut f64,
-) -> Option<(Vec<f64>, f64)> {
-    let (_, variance) = merit.of(layout, theta, &at.discrepancy);
-    let (hessian, gradient) = normal_equations(layout, theta, at, &merit.weights(&variance));
-    let free: Vec<usize> = (0..layout.len())
-        .filter(|&i| {
-            let outward = (theta[i] <= layout.lower[i] && gradient[i] < 0.0)
-                || (theta[i] >= layout.upper[i] && gradient[i] > 0.0);
-            !outward
-        })
-        .collect();
-    for _ in 0..8 {
-        let mut next = theta.to_vec();
-        if let Some(step) = damped_step(&hessian, &gradient, &free, *damping) {
-            for (i, delta) in step.iter().enumerate() {
-                next[i] += delta * layout.scale[i];
-            }
-            layout.clamp(&mut next);
-            if let Ok(discrepancy) = discrepancies(problem, layout, &next) {
-                let (value, _) = merit.of(layout, &next, &discrepancy);
-                if value < objective {
-                    *damping = (*damping * 0.1).max(1e-9);
-                    return Some((next, value));
+    discrepancy: Vec<Signals>,
+}
+
+/// Where steps are searched.
+struct Line<'a> {
+    problem: &'a Problem,
+    layout: &'a Layout,
+    merit: &'a Merit,
+}
+
+impl Line<'_> {
+    /// One accepted step of (4), or `None` when no damping finds an improvement.
+    fn step(
+        &self,
+        theta: &[f64],
+        objective: f64,
+        at: &Linearised,
+        damping: &mut f64,
+    ) -> Option<Next> {
+        let layout = self.layout;
+        let (_, variance) = self.merit.of(layout, theta, &at.discrepancy);
+        let weights = self.merit.weights(&variance);
+        let (hessian, gradient) = normal_equations(layout, theta, at, &weights);
+        let free: Vec<usize> = (0..layout.len())
+            .filter(|&i| {
+                let outward = (theta[i] <= layout.lower[i] && gradient[i] < 0.0)
+                    || (theta[i] >= layout.upper[i] && gradient[i] > 0.0);
+                !outward
+            })
+            .collect();
+        for _ in 0..MOST_DAMPINGS {
+            if let Some(step) = damped_step(&hessian, &gradient, &free, *damping) {
+                let mut next: Vec<f64> = (0..theta.len())
+                    .map(|i| theta[i] + step[i] * layout.scale[i])
+                    .collect();
+                layout.make_physical(&mut next);
+                if let Ok(discrepancy) = discrepancies(self.problem, layout, &next) {
+                    let (value, _) = self.merit.of(layout, &next, &discrepancy);
+                    if value < objective {
+                        *damping = (*damping * 0.1).max(1e-9);
+                        return Some(Next {
+                            theta: next,
+                            objective: value,
+                            discrepancy,
+                        });
+                    }
                 }
             }
+            *damping *= 10.0;
         }
-        *damping *= 10.0;
+        None
     }
-    None
 }
 
 fn finish(layout: &Layout, merit: &Merit, theta: &[f64], at: Linearised, iterations: usize) -> Fit {

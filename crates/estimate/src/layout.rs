@@ -87,12 +87,9 @@ impl Layout {
 
     fn push_parameter(&mut self, parameter: &Parameter, value: f64, std: f64) {
         let neutral = parameter.neutral.unwrap_or(0.0);
-        let size = (value - neutral).abs();
-        self.scale.push(if size > 0.0 {
-            size
-        } else {
-            value.abs().max(1e-12)
-        });
+        // Near the neutral value the distance to it is no scale any more.
+        let size = (value - neutral).abs().max(0.02 * neutral.abs());
+        self.scale.push(if size > 0.0 { size } else { 1.0 });
         self.prior_std.push(std);
         self.prior_mean.push(neutral);
         self.lower.push(parameter.lower);
@@ -113,13 +110,22 @@ impl Layout {
         self.scale.len()
     }
 
-    pub(crate) fn state_len(&self) -> usize {
-        self.state_len
-    }
-
     /// First entry of the initial state of a run.
     pub(crate) fn state_offset(&self, run: usize) -> usize {
         self.shared_len() + run * self.state_len
+    }
+
+    /// Entries a run depends on: the shared ones, then its own initial state.
+    pub(crate) fn entries(&self, run: usize) -> impl Iterator<Item = usize> + use<> {
+        let own = self.state_offset(run)..self.state_offset(run) + self.state_len;
+        (0..self.shared_len()).chain(own)
+    }
+
+    /// For each shared entry, the effect or nominal parameter it belongs to and which of its
+    /// values it is.
+    pub(crate) fn shared(&self) -> impl Iterator<Item = (&Placed, usize)> {
+        let placed = self.effects.iter().chain(&self.nominal);
+        placed.flat_map(|p| (0..p.values.len()).map(move |i| (p, i)))
     }
 
     pub(crate) fn pack(&self, start: &Start) -> Vec<f64> {
@@ -152,9 +158,13 @@ impl Layout {
         &theta[offset..offset + self.state_len]
     }
 
-    pub(crate) fn clamp(&self, theta: &mut [f64]) {
-        for (i, value) in theta.iter_mut().enumerate() {
-            *value = value.clamp(self.lower[i], self.upper[i]);
+    /// Moves the values of the effects and nominal parameters to the nearest physical ones.
+    pub(crate) fn make_physical(&self, theta: &mut [f64]) {
+        let mut rest = theta;
+        for placed in self.effects.iter().chain(&self.nominal) {
+            let (own, next) = rest.split_at_mut(placed.values.len());
+            placed.effect.make_physical(own);
+            rest = next;
         }
     }
 }

@@ -94,15 +94,35 @@ pub(crate) fn linearise(
     theta: &[f64],
 ) -> Result<Linearised, EstimateError> {
     let discrepancy = discrepancies(problem, layout, theta)?;
-    let columns = (0..problem.runs.len())
-        .map(|run| {
-            let own = layout.state_offset(run)..layout.state_offset(run) + layout.state_len();
-            (0..layout.shared_len())
-                .chain(own)
-                .map(|entry| column(problem, layout, theta, run, entry, &discrepancy[run]))
-                .collect::<Result<Vec<_>, _>>()
-        })
-        .collect::<Result<Vec<_>, _>>()?;
+    let columns = vec![vec![]; problem.runs.len()];
+    let known = Linearised {
+        discrepancy,
+        columns,
+    };
+    refresh(problem, layout, theta, known, |_, _| None)
+}
+
+/// Sensitivities at θ, where `known` holds its discrepancies and `stale` may hand over a column of
+/// a run (run, place in the run's list) from another point instead of computing it.
+pub(crate) fn refresh(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+    known: Linearised,
+    mut stale: impl FnMut(usize, usize) -> Option<Signals>,
+) -> Result<Linearised, EstimateError> {
+    let discrepancy = known.discrepancy;
+    let mut columns = Vec::with_capacity(problem.runs.len());
+    for (run, own) in discrepancy.iter().enumerate() {
+        let mut list = Vec::new();
+        for (place, entry) in layout.entries(run).enumerate() {
+            list.push(match stale(run, place) {
+                Some(column) => column,
+                None => column(problem, layout, theta, run, entry, own)?,
+            });
+        }
+        columns.push(list);
+    }
     Ok(Linearised {
         discrepancy,
         columns,

@@ -8,8 +8,7 @@ use crate::linearise::{Linearised, Signals};
 
 /// Index in θ of each column of a run.
 pub(crate) fn entries(layout: &Layout, run: usize) -> Vec<usize> {
-    let own = layout.state_offset(run)..layout.state_offset(run) + layout.state_len();
-    (0..layout.shared_len()).chain(own).collect()
+    layout.entries(run).collect()
 }
 
 /// Weighted inner product of two sets of signals.

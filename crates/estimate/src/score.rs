@@ -14,11 +14,11 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use simgap_effects::{Effect, Placed, SiteScale};
 
-use crate::fit::{Merit, state_scale};
+use crate::fit::{Merit, fit_with, state_scale};
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Signals, linearise};
 use crate::normal::{entries, inner, normal_equations};
-use crate::{Candidate, EstimateError, Fit, Problem, Weights};
+use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
 const TRIAL: f64 = 0.02;
@@ -106,6 +106,33 @@ fn sized(effect: &dyn Effect, shape: &[f64], only: Option<usize>, share: f64) ->
 }
 
 impl Base<'_> {
+    /// Fits a set that shares nominal parameters and initial states with the base, starting from
+    /// the sensitivities known here.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated from the start.
+    pub fn fit(&self, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
+        fit_with(self.problem, start, weights, |layout, run, place| {
+            let shared = layout.shared_len();
+            if place >= shared {
+                // Initial states keep their order and scale.
+                let own = self.layout.shared_len() + place - shared;
+                return self.at.columns[run].get(own).cloned();
+            }
+            if place < layout.effect_len() {
+                return None;
+            }
+            let (placed, value) = layout.shared().nth(place)?;
+            let twin = self.layout.shared().position(|(p, v)| {
+                v == value && p.effect.kind() == placed.effect.kind() && p.at == placed.at
+            })?;
+            let factor = layout.scale[place] / self.layout.scale[twin];
+            let mut column = self.at.columns[run][twin].clone();
+            column.iter_mut().flatten().for_each(|x| *x *= factor);
+            Some(column)
+        })
+    }
+
     fn score_shape(
         &self,
         candidate: &Candidate,
@@ -136,6 +163,7 @@ impl Base<'_> {
         if reached <= 0.0 && sizes.len() == 1 {
             return Ok(None);
         }
+        candidate.effect.make_physical(&mut values);
         let total: f64 = (0..self.at.discrepancy.len())
             .map(|run| {
                 inner(

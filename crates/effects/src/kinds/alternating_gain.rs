@@ -67,7 +67,7 @@ impl Effect for AlternatingGain {
     }
 
     fn action(&self, values: &[f64]) -> Action {
-        Action::Output(Box::new(Alternation { gain: values[0] }))
+        Action::Sampling(Box::new(Alternation { gain: values[0] }))
     }
 
     fn experiment(&self) -> &'static str {

@@ -63,7 +63,7 @@ impl Effect for AlternatingTiming {
     }
 
     fn action(&self, values: &[f64]) -> Action {
-        Action::Output(Box::new(Alternation {
+        Action::Sampling(Box::new(Alternation {
             timing_s: values[0],
         }))
     }

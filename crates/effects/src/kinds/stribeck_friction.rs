@@ -11,6 +11,9 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// ```
 pub(crate) struct StribeckFriction;
 
+/// Stribeck speeds to start from, as shares of the typical speed.
+const SHARES: [f64; 3] = [0.05, 0.2, 0.6];
+
 struct Law {
     sliding: f64,
     excess: f64,
@@ -76,7 +79,7 @@ impl Effect for StribeckFriction {
     }
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        [0.05, 0.2, 0.6]
+        SHARES
             .iter()
             .map(|share| {
                 let velocity = share * scale.velocity_m_per_s;
@@ -85,10 +88,35 @@ impl Effect for StribeckFriction {
             .collect()
     }
 
+    fn contains(&self) -> &'static [&'static str] {
+        &["coulomb_friction"]
+    }
+
+    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        SHARES
+            .iter()
+            .map(|share| {
+                vec![
+                    0.9 * values[0],
+                    1.3 * values[0],
+                    share * scale.velocity_m_per_s,
+                ]
+            })
+            .collect()
+    }
+
+    /// Friction at rest is not below that while sliding.
+    fn make_physical(&self, values: &mut [f64]) {
+        for (value, parameter) in values.iter_mut().zip(self.parameters()) {
+            *value = value.clamp(parameter.lower, parameter.upper);
+        }
+        values[1] = values[1].max(values[0]);
+    }
+
     fn action(&self, values: &[f64]) -> Action {
         Action::Force(Box::new(Law {
             sliding: values[0],
-            excess: (values[1] - values[0]).max(0.0),
+            excess: values[1] - values[0],
             velocity: values[2],
         }))
     }

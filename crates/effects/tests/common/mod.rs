@@ -83,7 +83,7 @@ pub(crate) fn law(kind: &str, values: &[f64]) -> Box<dyn ForceLaw> {
 /// The signal map of an effect.
 pub(crate) fn map(kind: &str, values: &[f64]) -> Box<dyn SignalMap> {
     match effect(kind).action(values) {
-        Action::Input(map) | Action::Output(map) => map,
+        Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map,
         _ => panic!("{kind} is no signal map"),
     }
 }
