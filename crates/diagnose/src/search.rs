@@ -147,6 +147,47 @@ impl<'a> Search<'a> {
         self.fit_all(&starts, &linear)
     }
 
+    /// The sets in which one effect has shrunk to a special case it contains.
+    pub(crate) fn shrink(
+        &self,
+        base: &Hypothesis,
+        index: usize,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        let old = &base.effects()[index];
+        let special = self.candidates.iter().filter(|(candidate, _)| {
+            candidate.at == old.at && old.effect.contains().contains(&candidate.effect.kind())
+        });
+        let starts: Vec<Start> = special
+            .map(|(candidate, scale)| {
+                let mut start = base.fit.estimate.clone();
+                // The first values of a larger effect are those of its special case.
+                let mut values = candidate.effect.starts(scale).swap_remove(0);
+                values
+                    .iter_mut()
+                    .zip(&old.values)
+                    .for_each(|(value, old)| *value = *old);
+                start.effects[index] = Placed {
+                    effect: candidate.effect,
+                    at: old.at.clone(),
+                    values,
+                };
+                start
+            })
+            .collect();
+        starts.par_iter().map(|start| self.fit(start)).collect()
+    }
+
+    /// How much more a set is penalised than another for its parameters.
+    pub(crate) fn penalty(&self, larger: &Hypothesis, smaller: &Hypothesis) -> f64 {
+        let count = |set: &Hypothesis| -> f64 {
+            set.effects()
+                .iter()
+                .map(|placed| placed.values.len() as f64)
+                .sum()
+        };
+        0.5 * (count(larger) - count(smaller)) * self.effective_samples.ln()
+    }
+
     fn grown(&self, base: &Hypothesis, index: usize) -> Vec<Start> {
         let old = &base.effects()[index];
         let larger = self.candidates.iter().filter(|(candidate, _)| {

@@ -96,15 +96,18 @@ fn without(
     search.fit(&remove(&set.fit.estimate, index))
 }
 
-/// Takes effects off a set until every one earns its place by evidence, by relevance and on
-/// samples that were held back.
+/// Takes effects off a set, or lets them shrink to special cases, until every one earns its place
+/// by evidence, by relevance and on samples that were held back.
 pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, EstimateError> {
     let mut set = set;
     loop {
-        let smaller = (0..set.effects().len())
+        let mut smaller = (0..set.effects().len())
             .into_par_iter()
             .map(|i| without(search, &set, i))
             .collect::<Result<Vec<_>, _>>()?;
+        for i in 0..set.effects().len() {
+            smaller.extend(search.shrink(&set, i)?);
+        }
         let mut weakest: Option<Hypothesis> = None;
         for subset in smaller {
             let earns = set.evidence - subset.evidence > EARNS
@@ -222,6 +225,9 @@ fn judge_once(
         let subset = without(search, set, i)?;
         let mut rivals = search.extend(&subset, most_rivals)?;
         rivals.extend(search.grow(set, i)?);
+        for rival in &mut rivals {
+            discount(search, set, rival);
+        }
         rivals.retain(|rival| rival.key() != set.key());
         sort(&mut rivals);
         unique(&mut rivals);
@@ -256,6 +262,23 @@ fn judge_once(
         }
     }
     Ok((list, better))
+}
+
+/// A rival that contains an effect of the set and moves no output by more than the simulation may
+/// be off is worth no more than the set, less its penalty for further parameters.
+fn discount(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
+    let Some(new) = replacement(set, rival) else {
+        return;
+    };
+    let nested = set
+        .effects()
+        .iter()
+        .any(|old| old.at == new.at && new.effect.contains().contains(&old.effect.kind()));
+    if nested && !relevant(search.problem, &rival.fit, &set.fit) {
+        rival.evidence = rival
+            .evidence
+            .min(set.evidence - search.penalty(rival, set));
+    }
 }
 
 /// The effect of a rival set that the set lacks.

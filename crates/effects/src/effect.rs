@@ -112,7 +112,8 @@ pub trait Effect: Sync + Send {
     /// but visible instance of the effect at this site.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>>;
 
-    /// Kinds that are special cases of this one: at one place only one of them makes sense.
+    /// Kinds that are special cases of this one, whose parameters come first among its own: at one
+    /// place only one of them makes sense.
     fn contains(&self) -> &'static [&'static str] {
         &[]
     }

@@ -117,9 +117,14 @@ pub(crate) fn fit_with(
         at = refresh(problem, &layout, &theta, here, |run, place| {
             (place >= from).then(|| std::mem::take(&mut kept[run][place]))
         })?;
-        exact = !weights.keep_nuisance;
-        if gain < weights.converged {
+        if gain >= weights.converged {
+            exact = !weights.keep_nuisance;
+        } else if exact {
             break;
+        } else {
+            // A small gain along kept sensitivities does not say that there is no larger one.
+            at = linearise(problem, &layout, &theta)?;
+            exact = true;
         }
     }
     Ok(finish(&layout, &merit, &theta, at, iterations))

@@ -35,6 +35,9 @@ pub struct Start {
     pub initial: Vec<Vec<f64>>,
 }
 
+/// Factor within which a fit moves a parameter that only shapes an effect.
+const SHAPE_REACH: f64 = 10.0;
+
 /// The vector θ: values of the effects, then of the nominal parameters, then the initial states.
 pub(crate) struct Layout {
     effects: Vec<Placed>,
@@ -92,8 +95,15 @@ impl Layout {
         self.scale.push(if size > 0.0 { size } else { 1.0 });
         self.prior_std.push(std);
         self.prior_mean.push(neutral);
-        self.lower.push(parameter.lower);
-        self.upper.push(parameter.upper);
+        // A fit looks for a shape around the one it starts from; others have starts of their own.
+        let shape = parameter.neutral.is_none() && value > 0.0;
+        let (least, most) = if shape {
+            (value / SHAPE_REACH, value * SHAPE_REACH)
+        } else {
+            (f64::MIN, f64::MAX)
+        };
+        self.lower.push(parameter.lower.max(least));
+        self.upper.push(parameter.upper.min(most));
     }
 
     /// Number of entries that every run depends on.
@@ -160,11 +170,19 @@ impl Layout {
 
     /// Moves the values of the effects and nominal parameters to the nearest physical ones.
     pub(crate) fn make_physical(&self, theta: &mut [f64]) {
-        let mut rest = theta;
+        let mut rest = &mut *theta;
         for placed in self.effects.iter().chain(&self.nominal) {
             let (own, next) = rest.split_at_mut(placed.values.len());
             placed.effect.make_physical(own);
             rest = next;
+        }
+        let shared = self.shared_len();
+        for (value, (lower, upper)) in theta
+            .iter_mut()
+            .zip(self.lower.iter().zip(&self.upper))
+            .take(shared)
+        {
+            *value = value.clamp(*lower, *upper);
         }
     }
 }

@@ -206,6 +206,32 @@ fn order_of_the_nonlinear_force() {
 }
 
 #[test]
+fn order_of_the_dry_force() {
+    // A driven oscillator with friction that reverses within the steps: the share of a step before
+    // each reversal is resolved, so that the error falls faster than in proportion to the step.
+    let end = |substeps: usize| {
+        let force: Vec<f64> = (0..61).map(|i| 60.0 * (i as f64 * 0.31).sin()).collect();
+        let law = to_ground(Coulomb(9.0));
+        march(
+            &one(1.0, 0.5, 100.0),
+            &law,
+            0.05,
+            substeps,
+            &force,
+            [0.1, 0.0],
+        )[60][0]
+    };
+    let reference = end(4096);
+    let errors: Vec<f64> = [4, 16, 64]
+        .iter()
+        .map(|&s| (end(s) - reference).abs())
+        .collect();
+    let order = (errors[0] / errors[2]).log2() / 4.0;
+    assert!(order > 1.6, "observed order {order}, errors {errors:?}");
+    assert!(errors[0] < 1e-3 * 0.6, "relative to the motion: {errors:?}");
+}
+
+#[test]
 fn verify_a_spring_as_element_is_the_spring() {
     // The same stiffness and damping, once in the matrices and once as a law on top.
     let force: Vec<f64> = (0..300).map(|i| (0.11 * i as f64).sin()).collect();

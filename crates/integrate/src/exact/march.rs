@@ -1,7 +1,7 @@
 //! Marching through a sampled excitation: the linear part exactly, nonlinear forces on top.
 //!
 //! Over each step the single-valued nonlinear forces S vary linearly between their values at the
-//! two ends, as the excitation does; dry forces D keep their end value:
+//! two ends, as the excitation does; dry forces D act by their mean over the step:
 //!
 //! ```text
 //! z₁ = Φ z₀ + Γ₀ (f₀ − E S₀) + Γ₁ (f₁ − E S₁) − (Γ₀ + Γ₁) E D₁                 (1)
@@ -134,7 +134,7 @@ impl Plant<'_> {
             let force = if m > 0 {
                 scratch.net.copy_from_slice(sample.force);
                 for (i, element) in self.elements.iter().enumerate() {
-                    carried[i] = self.smooth[i] + self.dry_force[i];
+                    carried[i] = self.smooth[i] + self.dry_end[i];
                     spread(element, carried[i], &mut scratch.net);
                 }
                 scratch.net.as_slice()

@@ -14,6 +14,9 @@ const SECANT_STEPS: usize = 12;
 /// Relative accuracy of the element forces, far below what the trapezoidal rule leaves.
 const FORCE_TOLERANCE: f64 = 1e-8;
 
+/// A velocity below this share of what the step would bring without friction is rest.
+const AT_REST: f64 = 1e-9;
+
 /// How the forces of element j move element i within one step, E and Γ folded.
 struct Compliance {
     /// C: displacement of i per S of j.
@@ -36,7 +39,12 @@ pub(super) struct Plant<'a> {
     /// S of each element at the end of the last step.
     pub(super) smooth: Vec<f64>,
     /// D of each element over the last step.
-    pub(super) dry_force: Vec<f64>,
+    dry_force: Vec<f64>,
+    /// D of each element at the end of the last step.
+    pub(super) dry_end: Vec<f64>,
+    /// Velocity across each element at the two ends of the step.
+    start_velocity: Vec<f64>,
+    end_velocity: Vec<f64>,
     free_displacement: Vec<f64>,
     free_velocity: Vec<f64>,
 }
@@ -111,6 +119,9 @@ impl<'a> Plant<'a> {
                 .collect(),
             smooth: vec![0.0; m],
             dry_force: vec![0.0; m],
+            dry_end: vec![0.0; m],
+            start_velocity: vec![0.0; m],
+            end_velocity: vec![0.0; m],
             free_displacement: vec![0.0; m],
             free_velocity: vec![0.0; m],
         }
@@ -139,7 +150,8 @@ impl<'a> Plant<'a> {
             let level = element.law.dry_level(motion.velocity.abs()).unwrap_or(0.0);
             // At rest the dry force balances what it can of the excitation across it.
             let at_rest = across(force, &vec![0.0; bases]).clamp(-level, level);
-            self.dry_force[i] = if motion.velocity == 0.0 {
+            self.end_velocity[i] = motion.velocity;
+            self.dry_end[i] = if motion.velocity == 0.0 {
                 at_rest
             } else {
                 level * motion.velocity.signum()
@@ -158,6 +170,13 @@ impl<'a> Plant<'a> {
                 - project(element.b, &free[..n], &base[..bases]);
             self.free_velocity[i] = project(element.a, &free[n..], &base[bases..])
                 - project(element.b, &free[n..], &base[bases..]);
+        }
+        self.start_velocity.copy_from_slice(&self.end_velocity);
+        // What sticks ends a step at rest but for rounding.
+        for (i, velocity) in self.start_velocity.iter_mut().enumerate() {
+            if velocity.abs() <= AT_REST * self.free_velocity[i].abs() {
+                *velocity = 0.0;
+            }
         }
         let sweeps = if m == 1 && !self.dry[0] { 1 } else { SWEEPS };
         for _ in 0..sweeps {
@@ -188,7 +207,14 @@ impl<'a> Plant<'a> {
         let (old_smooth, old_dry) = (self.smooth[i], self.dry_force[i]);
         if self.dry[i] {
             let free_velocity = velocity - c.velocity[own] * self.smooth[i];
-            self.dry_force[i] = dry_force(law.as_ref(), free_velocity, c.dry_velocity[own]);
+            let compliance = c.dry_velocity[own];
+            let dry = dry_force(
+                law.as_ref(),
+                self.start_velocity[i],
+                free_velocity,
+                compliance,
+            );
+            (self.dry_force[i], self.dry_end[i]) = (dry.mean, dry.end);
             displacement -= c.dry_displacement[own] * self.dry_force[i];
             velocity -= c.dry_velocity[own] * self.dry_force[i];
         }
@@ -199,6 +225,7 @@ impl<'a> Plant<'a> {
                 time_s,
             })
         });
+        self.end_velocity[i] = velocity - c.velocity[own] * self.smooth[i];
         let size = self.smooth[i].abs() + self.dry_force[i].abs();
         let change = (self.smooth[i] - old_smooth).abs() + (self.dry_force[i] - old_dry).abs();
         change <= FORCE_TOLERANCE * size
@@ -222,25 +249,82 @@ impl<'a> Plant<'a> {
     }
 }
 
-/// (4): the dry force at the end of a step that would end with `velocity` without it, when a unit
-/// of it changes the velocity by −`compliance`.
+/// The dry force over a step.
+struct Dry {
+    /// Its mean, which moves the plant.
+    mean: f64,
+    /// Its value at the end of the step.
+    end: f64,
+}
+
+/// (4): the dry force over a step that starts at the velocity `start` and would end at `free`
+/// without it, when a unit of its mean changes that by −`compliance`.
+///
+/// With nearly constant acceleration over the step, a sliding member that comes to rest does so
+/// after the share θ of the step and then either stays or slides on:
+///
+/// ```text
+/// v_A = v* − G F sgn v₀,   θ = v₀ / (v₀ − v_A)
+/// mean = F sgn(v₀) (2θ − 1)  when the other forces exceed the friction at rest, else v* / G
+/// ```
 #[inline(always)]
-fn dry_force(law: &dyn ForceLaw, velocity: f64, compliance: f64) -> f64 {
+fn dry_force(law: &dyn ForceLaw, start: f64, free: f64, compliance: f64) -> Dry {
     let level = |speed: f64| law.dry_level(speed).unwrap_or(0.0).max(0.0);
-    if compliance > 0.0 && velocity.abs() <= compliance * level(0.0) {
-        return velocity / compliance;
-    }
-    // Sliding: |v| = |v*| − G level(|v|), by fixed-point iteration (levels change little in a step).
-    let mut speed = velocity.abs();
-    for _ in 0..4 {
-        speed = (velocity.abs() - compliance * level(speed)).max(0.0);
-    }
-    level(speed)
-        * if velocity == 0.0 {
+    let sign = |velocity: f64| {
+        if velocity == 0.0 {
             0.0
         } else {
             velocity.signum()
         }
+    };
+    let at_rest = level(0.0);
+    if compliance <= 0.0 {
+        // A prescribed motion does not mind.
+        let force = level(free.abs()) * sign(free);
+        return Dry {
+            mean: force,
+            end: force,
+        };
+    }
+    let stuck = Dry {
+        mean: free / compliance,
+        end: free / compliance,
+    };
+    if start == 0.0 {
+        if free.abs() <= compliance * at_rest {
+            return stuck;
+        }
+        return sliding(level, sign(free), free, compliance);
+    }
+    let before = sign(start);
+    let slid = sliding(level, before, free, compliance);
+    let ahead = free - compliance * slid.mean;
+    if ahead * before >= 0.0 {
+        return slid;
+    }
+    if (free - start).abs() <= compliance * at_rest {
+        return stuck;
+    }
+    let share = start / (start - ahead);
+    let force = level(0.5 * (start.abs() + ahead.abs()));
+    Dry {
+        mean: force * before * (2.0 * share - 1.0),
+        end: -before * level(ahead.abs()),
+    }
+}
+
+/// Sliding one way: |v| = s v* − G F(|v|), by fixed-point iteration (levels change little in a step).
+#[inline(always)]
+fn sliding(level: impl Fn(f64) -> f64, sign: f64, free: f64, compliance: f64) -> Dry {
+    let mut speed = sign * free;
+    for _ in 0..3 {
+        speed = (sign * free - compliance * level(speed.max(0.0))).max(0.0);
+    }
+    let force = sign * level(speed);
+    Dry {
+        mean: force,
+        end: force,
+    }
 }
 
 /// (3): solves S = φ(S) from a first guess by the secant method.
