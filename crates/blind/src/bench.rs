@@ -45,6 +45,7 @@ impl Bench {
                 .collect()
         };
         Run {
+            first_index: 0,
             name: String::new(),
             start_s: self.start_s + begins_s,
             time_step_s: step,
@@ -67,6 +68,7 @@ impl Bench {
     /// The inputs as a run of the record's own rate, nothing measured.
     pub(crate) fn coarse_run(&self, model: &Model) -> Run {
         Run {
+            first_index: 0,
             name: String::new(),
             start_s: self.start_s,
             time_step_s: self.time_step_s,
@@ -128,6 +130,8 @@ impl Bench {
             Action::Output(map) => map.apply(Sampled {
                 values,
                 time_step_s,
+
+                first_index: 0,
             }),
             _ => values.to_vec(),
         };

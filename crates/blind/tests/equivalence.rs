@@ -68,6 +68,7 @@ fn settled(model: &Model, effect: &Placed) -> Vec<f64> {
         .map(|i| 30.0 * (0.05 * f64::from(i)).sin())
         .collect();
     let run = Run {
+        first_index: 0,
         name: String::new(),
         start_s: 0.0,
         time_step_s: 2e-3,
@@ -85,6 +86,8 @@ fn settled(model: &Model, effect: &Placed) -> Vec<f64> {
         y = map.apply(Sampled {
             values: &y,
             time_step_s: 2e-3,
+
+            first_index: 0,
         });
     }
     y.split_off(4000)

@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use simgap_estimate::{Problem, Weights, fit_initial_states};
-use simgap_model::OutputKind;
 use simgap_record::write_csv_atomic;
-use simgap_simulate::Run;
+use simgap_simulate::{Run, output_unit};
 
 use crate::args::SimulateArgs;
 use crate::error::CliError;
@@ -45,12 +44,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     let mut headers = vec!["t [s]".to_string()];
     let mut columns: Vec<&[f64]> = vec![record.time_s()];
     for (output, signal) in model.outputs.iter().zip(&predicted) {
-        let unit = match output.kind {
-            OutputKind::Displacement => "m",
-            OutputKind::Velocity => "m/s",
-            OutputKind::Acceleration => "m/s^2",
-            OutputKind::Force => "N",
-        };
+        let unit = output_unit(output, &record);
         headers.push(format!("{} [{unit}]", output.channel));
         columns.push(signal);
     }

@@ -2,12 +2,15 @@
 
 use simgap_model::Model;
 use simgap_record::Record;
-use simgap_simulate::Run;
+use simgap_simulate::{Run, output_unit};
 
 use crate::DiagnoseError;
 
 /// Share of each record that is held back when no check record is given.
 const HELD_BACK: f64 = 1.0 / 3.0;
+
+/// Fewest samples of a record to learn from: below that every small set of effects fits.
+const FEWEST: usize = 50;
 
 /// Samples the search may use; more make it slower, not wiser.
 const SEARCH_SAMPLES: usize = 16_000;
@@ -19,6 +22,8 @@ pub(crate) struct Data {
     /// Held back; its time stamps beside it.
     pub(crate) check: Vec<Run>,
     pub(crate) check_times: Vec<Vec<f64>>,
+    /// Unit of each output in the model.
+    pub(crate) output_units: Vec<&'static str>,
     /// What a reader must know about the division.
     pub(crate) notes: Vec<String>,
 }
@@ -48,14 +53,33 @@ pub(crate) fn divide(
         train: vec![],
         check: vec![],
         check_times: vec![],
+        output_units: model
+            .outputs
+            .iter()
+            .map(|o| output_unit(o, &train[0]))
+            .collect(),
         notes: vec![],
     };
     for record in train {
+        let left = if check.is_empty() {
+            record.len() - held_back(record)
+        } else {
+            record.len()
+        };
+        if left < FEWEST {
+            return Err(DiagnoseError::TooShort {
+                record: record.name().to_string(),
+                found: left,
+                needed: FEWEST,
+            });
+        }
         if check.is_empty() {
-            let cut = record.len() - (record.len() as f64 * HELD_BACK) as usize;
+            let cut = record.len() - held_back(record);
             data.train.push(run(&record.slice(0..cut)?)?);
             let held = record.slice(cut..record.len())?;
-            data.check.push(run(&held)?);
+            let mut held_run = run(&held)?;
+            held_run.first_index = cut;
+            data.check.push(held_run);
             data.notes.push(format!(
                 "no check record was given: the last third of {} ({:.6} s to {:.6} s) was held back",
                 record.name(),
@@ -71,7 +95,12 @@ pub(crate) fn divide(
         data.check.push(run(record)?);
         data.check_times.push(record.time_s().to_vec());
     }
+    crate::parity::align(&mut data.train, &mut data.check);
     Ok(data)
+}
+
+fn held_back(record: &Record) -> usize {
+    (record.len() as f64 * HELD_BACK) as usize
 }
 
 /// The stretches of the training runs that the search uses: all of them when they are short, else

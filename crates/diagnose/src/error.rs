@@ -24,6 +24,16 @@ pub enum DiagnoseError {
     /// No record to learn from.
     #[error("no training record was given, needed is at least one")]
     NoRecord,
+    /// A record too short to learn from.
+    #[error("{record}: {found} rows to learn from, needed is {needed} or more")]
+    TooShort {
+        /// Record.
+        record: String,
+        /// Rows left to learn from.
+        found: usize,
+        /// Fewest.
+        needed: usize,
+    },
     /// A measured output that never changes has no scale to compare with.
     #[error("{record}: column \"{channel}\" never changes, needed is a measured motion or force")]
     FlatOutput {

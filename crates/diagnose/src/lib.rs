@@ -18,6 +18,7 @@ mod error;
 mod evidence;
 mod gap;
 mod locate;
+mod parity;
 mod pipeline;
 mod search;
 mod structure;

@@ -153,7 +153,10 @@ pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> 
             .unwrap_or(peak);
         let share = left[low..=high].iter().sum::<f64>() / total;
         left[low..=high].fill(0.0);
-        let (from_hz, to_hz) = ((freq_hz[low] - half_bin).max(0.0), freq_hz[high] + half_bin);
+        let (from_hz, to_hz) = (
+            (freq_hz[low] - half_bin).max(0.0),
+            (freq_hz[high] + half_bin).min(0.5 * fs),
+        );
         list.push(BandShare {
             from_hz,
             to_hz,

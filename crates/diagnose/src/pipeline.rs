@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use simgap_effects::{Action, Family, Placed, catalogue};
 use simgap_estimate::{Fit, Problem, Start, Weights, fit, fit_initial_states};
-use simgap_model::{Location, Model, OutputKind};
+use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
 
 use crate::data::{Data, divide, excerpts};
@@ -135,7 +135,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
             candidates,
             notes: notes(request, &data),
         },
-        corrected: corrected_model(request, &placed),
+        corrected: corrected_model(request.model, &placed),
         series: series(&check, &data, &predictions[0], &predictions[shown]),
     })
 }
@@ -277,8 +277,8 @@ fn worth_a_note(finding: &QualityFinding) -> bool {
 }
 
 /// The nominal model with its parameters changed and the effects listed.
-fn corrected_model(request: &Request<'_>, placed: &[Placed]) -> Model {
-    let mut model = request.model.clone();
+fn corrected_model(nominal: &Model, placed: &[Placed]) -> Model {
+    let mut model = nominal.clone();
     for effect in placed {
         if effect.effect.family() != Family::NominalParameter {
             model.effects.push(effect.to_entry());
@@ -287,14 +287,14 @@ fn corrected_model(request: &Request<'_>, placed: &[Placed]) -> Model {
         match (effect.action(), &effect.at) {
             (Action::Model(change), at) => change(&mut model, at),
             (_, Location::Input(channel)) => {
-                // Without a gain the channel is converted by its unit; a gain replaces that.
-                let unit = request
-                    .train
-                    .first()
-                    .and_then(|record| record.channel(channel))
-                    .map_or(1.0, |c| c.unit.si_factor());
-                for input in model.inputs.iter_mut().filter(|i| &i.channel == channel) {
-                    input.gain = Some(input.gain.unwrap_or(unit) * effect.values[0]);
+                let gain = model
+                    .inputs
+                    .iter_mut()
+                    .find(|input| &input.channel == channel);
+                match gain.and_then(|input| input.gain.as_mut()) {
+                    Some(gain) => *gain *= effect.values[0],
+                    // Without a gain every record is converted by its own unit, and stays so.
+                    None => model.effects.push(effect.to_entry()),
                 }
             }
             _ => {}
@@ -331,12 +331,7 @@ fn series(
                     };
                     ChannelSeries {
                         channel: output.channel.clone(),
-                        unit: match output.kind {
-                            OutputKind::Displacement => "m",
-                            OutputKind::Velocity => "m/s",
-                            OutputKind::Acceleration => "m/s^2",
-                            OutputKind::Force => "N",
-                        },
+                        unit: data.output_units[c],
                         nominal: predicted(nominal),
                         corrected: predicted(corrected),
                         measured,

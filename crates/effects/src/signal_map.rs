@@ -7,6 +7,9 @@ pub struct Sampled<'a> {
     pub values: &'a [f64],
     /// Sampling interval, s.
     pub time_step_s: f64,
+    /// Number of the first value on the clock of the converter: a stretch cut out of a record keeps
+    /// the even and odd samples of the record.
+    pub first_index: usize,
 }
 
 /// Turns the true signal into what the chain delivers, sample by sample.
@@ -75,6 +78,8 @@ mod tests {
         let signal = Sampled {
             values: &values,
             time_step_s: 1.0,
+
+            first_index: 0,
         };
         for k in 0..=110 {
             let p = f64::from(k) * 0.1;
@@ -97,6 +102,8 @@ mod tests {
             let signal = Sampled {
                 values: &values,
                 time_step_s: 1.0,
+
+                first_index: 0,
             };
             for k in 100..900 {
                 let p = f64::from(k) * 0.1;

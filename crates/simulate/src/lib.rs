@@ -10,6 +10,6 @@ mod simulator;
 mod step;
 
 pub use error::SimulateError;
-pub use run::{Run, input_quantity, output_quantity};
+pub use run::{Run, input_quantity, output_quantity, output_unit};
 pub use simulator::{MemberPath, Simulator};
 pub use step::substeps_for;

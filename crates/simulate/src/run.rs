@@ -1,6 +1,6 @@
 //! A record in the units of a model.
 
-use simgap_model::{InputKind, Model, OutputKind};
+use simgap_model::{InputKind, Model, Output, OutputKind};
 use simgap_record::{Quantity, Record};
 
 use crate::SimulateError;
@@ -16,6 +16,8 @@ pub struct Run {
     pub time_step_s: f64,
     /// Number of samples.
     pub len: usize,
+    /// Number of the first sample on the clock of the converter (see [`simgap_effects::Sampled`]).
+    pub first_index: usize,
     /// One signal for each input of the model, in model units.
     pub inputs: Vec<Vec<f64>>,
     /// One signal for each output of the model, in model units; `None` where the record has no
@@ -57,6 +59,7 @@ impl Run {
             start_s: record.time_s().first().copied().unwrap_or(0.0),
             time_step_s: record.time_step_s(),
             len: record.len(),
+            first_index: 0,
             inputs,
             measured,
         })
@@ -84,6 +87,7 @@ impl Run {
             start_s: self.start_s + start as f64 * self.time_step_s,
             time_step_s: self.time_step_s,
             len: end - start,
+            first_index: self.first_index + start,
             inputs: self.inputs.iter().map(cut).collect(),
             measured: self
                 .measured
@@ -117,5 +121,20 @@ pub fn output_quantity(kind: OutputKind) -> Quantity {
         OutputKind::Velocity => Quantity::Velocity,
         OutputKind::Acceleration => Quantity::Acceleration,
         OutputKind::Force => Quantity::Force,
+    }
+}
+
+/// Unit of an output in the model: SI, as a length or as an angle according to the record's column;
+/// a column with a gain is taken as a length.
+#[must_use]
+pub fn output_unit(output: &Output, record: &Record) -> &'static str {
+    match record.channel(&output.channel) {
+        Some(channel) if output.gain.is_none() => channel.unit.kind().si_symbol(),
+        _ => match output.kind {
+            OutputKind::Displacement => "m",
+            OutputKind::Velocity => "m/s",
+            OutputKind::Acceleration => "m/s^2",
+            OutputKind::Force => "N",
+        },
     }
 }

@@ -160,6 +160,8 @@ impl Simulator {
             let signal = Sampled {
                 values: &predicted[*output],
                 time_step_s: run.time_step_s,
+
+                first_index: run.first_index,
             };
             predicted[*output] = map.apply(signal);
         }
@@ -256,6 +258,8 @@ impl Simulator {
             let signal = Sampled {
                 values: &inputs[*input],
                 time_step_s: run.time_step_s,
+
+                first_index: run.first_index,
             };
             inputs[*input] = map.apply(signal).into();
         }

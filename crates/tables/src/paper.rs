@@ -105,7 +105,7 @@ pub struct Table5 {
 macro_rules! embedded {
     ($function:ident, $table:ident, $text:ident, $file:literal, $title:literal) => {
         #[doc = concat!("Reads ", $title, " from the embedded fixture.\n\n# Errors\n",
-                        "A [`TableError`] if the fixture was damaged.")]
+                                                "A [`TableError`] if the fixture was damaged.")]
         pub fn $function() -> Result<$table, TableError> {
             $table::parse($file, $text)
         }

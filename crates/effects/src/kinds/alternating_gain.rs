@@ -17,7 +17,7 @@ struct Alternation {
 impl SignalMap for Alternation {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
         let sign = |i: usize| {
-            if i.is_multiple_of(2) {
+            if (signal.first_index + i).is_multiple_of(2) {
                 self.gain
             } else {
                 -self.gain

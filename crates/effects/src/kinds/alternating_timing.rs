@@ -17,7 +17,13 @@ struct Alternation {
 impl SignalMap for Alternation {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
         let shift = self.timing_s / signal.time_step_s;
-        let sign = |i: usize| if i.is_multiple_of(2) { shift } else { -shift };
+        let sign = |i: usize| {
+            if (signal.first_index + i).is_multiple_of(2) {
+                shift
+            } else {
+                -shift
+            }
+        };
         (0..signal.values.len())
             .map(|i| signal.at(i as f64 + sign(i)))
             .collect()

@@ -102,5 +102,7 @@ pub(crate) fn through(map: &dyn SignalMap, values: &[f64], time_step_s: f64) -> 
     map.apply(Sampled {
         values,
         time_step_s,
+
+        first_index: 0,
     })
 }

@@ -68,6 +68,7 @@ pub fn truth(
     initial: &[f64],
 ) -> Run {
     let mut run = Run {
+        first_index: 0,
         name: "made here".into(),
         start_s: 0.0,
         time_step_s: step,
