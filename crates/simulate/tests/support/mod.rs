@@ -51,6 +51,7 @@ pub fn force_output(channel: &str, a: &str, b: &str) -> String {
 pub fn run(time_step_s: f64, len: usize, inputs: Vec<Vec<f64>>) -> Run {
     assert!(inputs.iter().all(|signal| signal.len() == len));
     Run {
+        first_index: 0,
         name: "made here".into(),
         start_s: 0.0,
         time_step_s,
