@@ -90,7 +90,7 @@ impl Bench {
         let (chain, plant): (Vec<Placed>, Vec<Placed>) = effects
             .iter()
             .cloned()
-            .partition(|placed| matches!(placed.action(), Action::Output(_)));
+            .partition(|placed| matches!(placed.action(), Action::Output(_) | Action::Sampling(_)));
         let run = self.fine_run(model);
         let simulator = Simulator::new(model, &plant, refinement)?;
         let fine = simulator.predict(&run, &self.state(&simulator))?;
@@ -127,16 +127,18 @@ impl Bench {
         let here = |placed: &&Placed| placed.at == Location::Channel(channel.to_string());
         let has_memory = |placed: &&Placed| WITH_MEMORY.contains(&placed.effect.kind());
         let apply = |values: &[f64], placed: &Placed, time_step_s: f64| match placed.action() {
-            Action::Output(map) => map.apply(Sampled {
+            Action::Output(map) | Action::Sampling(map) => map.apply(Sampled {
                 values,
                 time_step_s,
-
                 first_index: 0,
             }),
             _ => values.to_vec(),
         };
+        // What happens while sampling comes after what happens before, however it is listed.
+        let mut chain: Vec<&Placed> = chain.iter().filter(here).collect();
+        chain.sort_by_key(|placed| matches!(placed.action(), Action::Sampling(_)));
         let step = self.time_step_s / OVERSAMPLING as f64;
-        for placed in chain.iter().filter(here).filter(has_memory) {
+        for placed in chain.iter().filter(|p| has_memory(p)) {
             fine = apply(&fine, placed, step);
         }
         let mut sampled: Vec<f64> = fine
@@ -148,7 +150,7 @@ impl Bench {
         if let Some(noise) = noise {
             sampled.iter_mut().zip(noise).for_each(|(y, e)| *y += e);
         }
-        for placed in chain.iter().filter(here).filter(|p| !has_memory(p)) {
+        for placed in chain.iter().filter(|p| !has_memory(p)) {
             sampled = apply(&sampled, placed, self.time_step_s);
         }
         sampled

@@ -10,7 +10,7 @@ use crate::DiagnoseError;
 const HELD_BACK: f64 = 1.0 / 3.0;
 
 /// Fewest samples of a record to learn from: below that every small set of effects fits.
-const FEWEST: usize = 50;
+const FEWEST: usize = 20;
 
 /// Samples the search may use; more make it slower, not wiser.
 const SEARCH_SAMPLES: usize = 16_000;

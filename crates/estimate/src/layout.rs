@@ -100,7 +100,7 @@ impl Layout {
         let (least, most) = if shape {
             (value / SHAPE_REACH, value * SHAPE_REACH)
         } else {
-            (f64::MIN, f64::MAX)
+            (f64::NEG_INFINITY, f64::INFINITY)
         };
         self.lower.push(parameter.lower.max(least));
         self.upper.push(parameter.upper.min(most));
