@@ -15,7 +15,7 @@ use simgap_estimate::{
 use crate::evidence::{effective_samples, evidence};
 
 /// Sets of each size that the next size starts from.
-const SURVIVORS: [usize; 2] = [6, 3];
+const SURVIVORS: [usize; 2] = [5, 3];
 /// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Prior of [`Weights::independent`] on nominal parameters.
@@ -113,8 +113,7 @@ impl<'a> Search<'a> {
         Hypothesis { fit, evidence }
     }
 
-    /// Every set worth a fit with one more effect than `base`, and every set in which an effect of
-    /// `base` has grown into one that contains it; best first.
+    /// Every set worth a fit with one more effect than `base`, best first.
     pub(crate) fn extend(
         &self,
         base: &Hypothesis,
@@ -122,14 +121,11 @@ impl<'a> Search<'a> {
     ) -> Result<Vec<Hypothesis>, EstimateError> {
         let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
         let scores = self.scores(base, &linear)?;
-        let mut starts: Vec<Start> = self
+        let starts: Vec<Start> = self
             .pick(scores, most, base.effects().is_empty())
             .into_iter()
             .map(|score| add(&base.fit.estimate, score.start))
             .collect();
-        for index in 0..base.effects().len() {
-            starts.extend(self.grown(base, index));
-        }
         self.fit_all(&starts, &linear)
     }
 
@@ -238,9 +234,10 @@ impl<'a> Search<'a> {
         Ok(scores)
     }
 
-    /// The best `most` scores, two shapes of a candidate at most. For single effects every kind
-    /// gets a fit at its best place: the linear score says little where the gap is large.
+    /// The best `most` scores, each candidate in its best shape. Of single effects two shapes are
+    /// picked, and every kind gets a fit at its best place: the linear score says little where the gap is large.
     fn pick(&self, scores: Vec<Score>, most: usize, every_kind: bool) -> Vec<Score> {
+        let shapes = if every_kind { 2 } else { 1 };
         let mut picked: Vec<Score> = Vec::new();
         for score in scores {
             let twins = picked
@@ -251,7 +248,7 @@ impl<'a> Search<'a> {
                 .iter()
                 .any(|p| p.start.effect.kind() == score.start.effect.kind());
             let room = picked.len() < most && score.gain > HOPELESS;
-            if twins < 2 && (room || (every_kind && !kin)) {
+            if twins < shapes && (room || (every_kind && !kin)) {
                 picked.push(score);
             }
         }

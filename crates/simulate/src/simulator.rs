@@ -29,20 +29,6 @@ pub struct MemberPath {
     pub acceleration: Vec<f64>,
 }
 
-/// Finer steps where dry friction acts: within the step of a reversal its force jumps.
-const DRY_REFINEMENT: usize = 2;
-
-/// Steps between two samples for these elements.
-fn refined(elements: &[Element], substeps: usize) -> usize {
-    if elements.is_empty() {
-        return 1;
-    }
-    let dry = elements
-        .iter()
-        .any(|element| element.law.dry_level(0.0).is_some());
-    substeps.max(1) * if dry { DRY_REFINEMENT } else { 1 }
-}
-
 /// Gravity on an arm, F = value sin(angle).
 struct Gravity(f64);
 
@@ -108,7 +94,11 @@ impl Simulator {
         Ok(Simulator {
             outputs: output_plans(&model, &elements, &carried)?,
             loads: model.load_vector(),
-            substeps: refined(&elements, substeps),
+            substeps: if elements.is_empty() {
+                1
+            } else {
+                substeps.max(1)
+            },
             model,
             elements,
             input_maps,

@@ -196,8 +196,7 @@ fn verify_friction_holds_against_any_force_below_its_level() {
     for substeps in [1, 3, 8] {
         let (travel, speed, carried, force) = moved(0.999, substeps);
         assert!(speed < 1e-12, "it stands still: {speed:e} m/s");
-        // The simulator halves its steps where dry friction acts.
-        let h = 0.5e-3 / substeps as f64;
+        let h = 1e-3 / substeps as f64;
         let gives = h * h * 0.999 * level / (12.0 * mass);
         assert!(
             (travel / gives - 1.0).abs() < 1e-3,
