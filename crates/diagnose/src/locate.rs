@@ -2,7 +2,7 @@
 //! states of motion.
 
 use simgap_estimate::{EstimateError, Problem};
-use simgap_model::{InputKind, Location, undamped_modes};
+use simgap_model::{Location, undamped_modes};
 use simgap_signal::spectrum::Psd;
 use simgap_signal::welch::welch;
 use simgap_simulate::MemberPath;
@@ -178,29 +178,24 @@ struct Marks {
 fn marks(check: &Problem, run: usize, spectrum: &dyn Fn(&[f64]) -> Option<Psd>) -> Marks {
     let signals = &check.runs[run];
     // A single line that carries most of an input is the excitation; free decays have none.
-    let excitation_hz = signals
-        .inputs
-        .iter()
-        .zip(&check.model.inputs)
-        .find_map(|(u, input)| {
-            let _: InputKind = input.kind;
-            let psd = spectrum(u)?;
-            let total: f64 = psd.density.iter().sum();
-            let (peak, _) = psd
-                .density
-                .iter()
-                .enumerate()
-                .max_by(|a, b| a.1.total_cmp(b.1))?;
-            let around = peak.saturating_sub(2)..(peak + 3).min(psd.density.len());
-            let weights = &psd.density[around.clone()];
-            let power: f64 = weights.iter().sum();
-            let mean: f64 = psd.freq_hz[around]
-                .iter()
-                .zip(weights)
-                .map(|(f, w)| f * w)
-                .sum();
-            (power > 0.7 * total && peak > 0).then(|| mean / power)
-        });
+    let excitation_hz = signals.inputs.iter().find_map(|u| {
+        let psd = spectrum(u)?;
+        let total: f64 = psd.density.iter().sum();
+        let (peak, _) = psd
+            .density
+            .iter()
+            .enumerate()
+            .max_by(|a, b| a.1.total_cmp(b.1))?;
+        let around = peak.saturating_sub(2)..(peak + 3).min(psd.density.len());
+        let weights = &psd.density[around.clone()];
+        let power: f64 = weights.iter().sum();
+        let mean: f64 = psd.freq_hz[around]
+            .iter()
+            .zip(weights)
+            .map(|(f, w)| f * w)
+            .sum();
+        (power > 0.7 * total && peak > 0).then(|| mean / power)
+    });
     let natural_hz = check
         .model
         .matrices()

@@ -54,6 +54,20 @@ pub struct Parameter {
     pub neutral: Option<f64>,
 }
 
+impl Parameter {
+    /// A factor on a nominal value: not negative, without effect at one.
+    #[must_use]
+    pub const fn factor(name: &'static str) -> Parameter {
+        Parameter {
+            name,
+            unit: "1",
+            lower: 0.0,
+            upper: f64::INFINITY,
+            neutral: Some(1.0),
+        }
+    }
+}
+
 /// Typical sizes at a site, from which an effect takes its starting values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SiteScale {

@@ -176,8 +176,9 @@ fn print_accuracy() {
         "{:<24} {:>8} {:>12} {:>12} {:>10}",
         "method", "substeps", "error", "ns/sample", "steps"
     );
+    let interleaved = interleaved_force();
     let start = Instant::now();
-    let path = exact(&matrices, &interleaved_force());
+    let path = exact(&matrices, &interleaved);
     let spent = start.elapsed().as_nanos() as f64 / SAMPLES as f64;
     let size = path.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     let worst = (0..SAMPLES)

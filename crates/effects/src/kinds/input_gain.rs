@@ -36,13 +36,7 @@ impl Effect for InputGain {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        &[Parameter {
-            name: "gain_factor",
-            unit: "1",
-            lower: 0.0,
-            upper: f64::INFINITY,
-            neutral: Some(1.0),
-        }]
+        const { &[Parameter::factor("gain_factor")] }
     }
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {

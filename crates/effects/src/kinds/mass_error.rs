@@ -32,13 +32,7 @@ impl Effect for MassError {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        &[Parameter {
-            name: "mass_factor",
-            unit: "1",
-            lower: 0.0,
-            upper: f64::INFINITY,
-            neutral: Some(1.0),
-        }]
+        const { &[Parameter::factor("mass_factor")] }
     }
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {

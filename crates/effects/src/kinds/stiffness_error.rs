@@ -29,13 +29,7 @@ impl Effect for StiffnessError {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        &[Parameter {
-            name: "stiffness_factor",
-            unit: "1",
-            lower: 0.0,
-            upper: f64::INFINITY,
-            neutral: Some(1.0),
-        }]
+        const { &[Parameter::factor("stiffness_factor")] }
     }
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
