@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use simgap_effects::Action;
 use simgap_estimate::{Problem, Weights, fit_initial_states};
 use simgap_record::write_csv_atomic;
 use simgap_simulate::{Run, output_unit};
@@ -21,17 +22,30 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
         path: args.record.clone(),
         error,
     };
-    let run = Run::new(&model, &record).map_err(failed)?;
-    let problem = Problem::new(&model, vec![run.clone()]).map_err(failed)?;
+    let mut run = Run::new(&model, &record).map_err(failed)?;
+    let mut problem = Problem::new(&model, vec![run.clone()]).map_err(failed)?;
     let measured = run.measured.iter().any(Option::is_some);
-    let initial = if measured && !args.from_rest {
-        // The record need not start at rest: its outputs say how it starts.
+    let mut initial = vec![];
+    if measured && !args.from_rest {
+        // The record need not start at rest, nor with the even half of an alternation: its outputs
+        // say how it starts.
         let weights = Weights::independent(model.outputs.len());
-        let fit = fit_initial_states(&problem, &[], &weights).map_err(failed)?;
-        fit.estimate.initial.into_iter().next().unwrap_or_default()
-    } else {
-        vec![]
-    };
+        let mut best = fit_initial_states(&problem, &[], &weights).map_err(failed)?;
+        if problem
+            .given
+            .iter()
+            .any(|placed| matches!(placed.action(), Action::Sampling(_)))
+        {
+            let mut other_half = run.clone();
+            other_half.first_index += 1;
+            let other = problem.with_runs(vec![other_half.clone()]);
+            let fit = fit_initial_states(&other, &[], &weights).map_err(failed)?;
+            if fit.objective < best.objective {
+                (run, problem, best) = (other_half, other, fit);
+            }
+        }
+        initial = best.estimate.initial.into_iter().next().unwrap_or_default();
+    }
     let simulator = problem.simulator(&[]).map_err(failed)?;
     let predicted = simulator.predict(&run, &initial).map_err(failed)?;
     let finite = |signal: &Vec<f64>| signal.iter().all(|value| value.is_finite());

@@ -158,7 +158,7 @@ fn sentences(judged: &Judged) -> Vec<String> {
         judged.placed.effect.summary().to_string(),
         format!("log evidence falls by {:.1} without it", judged.worth),
         format!(
-            "the squared discrepancy of the training records is {:.1} % lower with it",
+            "the squared discrepancy of the channel that profits most is {:.1} % lower with it",
             100.0 * judged.relevance
         ),
     ];
@@ -178,7 +178,7 @@ pub(crate) fn candidates(
     verdict: &Verdict,
     weights: &Weights,
 ) -> Result<Vec<CandidateResult>, EstimateError> {
-    let mut sets: Vec<Vec<Placed>> = answer
+    let sets: Vec<Vec<Placed>> = answer
         .singles
         .iter()
         .take(SHOWN)
@@ -192,7 +192,6 @@ pub(crate) fn candidates(
                 .collect()
         })
         .collect();
-    sets.retain(|set: &Vec<Placed>| !set.is_empty());
     let gaps = sets
         .par_iter()
         .map(|set| Ok(total(&predict(check, set, weights)?.nrmse)))
@@ -224,19 +223,17 @@ fn probability(answer: &Answer, verdict: &Verdict, placed: &Placed) -> f64 {
     answer
         .judged
         .iter()
-        .flat_map(|judged| shares_of(answer, judged))
+        .flat_map(shares_of)
         .filter(|(candidate, _)| name(candidate) == name(placed))
         .map(|(_, probability)| probability)
         .fold(0.0, f64::max)
 }
 
 /// A named effect and its rivals with their probabilities.
-fn shares_of<'a>(answer: &Answer, judged: &'a Judged) -> Vec<(&'a Placed, f64)> {
-    let mut evidence = vec![answer.set.evidence];
-    evidence.extend(judged.swaps.iter().map(|swap| swap.evidence));
-    let placed =
-        std::iter::once(&judged.placed).chain(judged.swaps.iter().map(|swap| &swap.placed));
-    placed.zip(probabilities(&evidence)).collect()
+fn shares_of(judged: &Judged) -> impl Iterator<Item = (&Placed, f64)> {
+    let rivals = judged.swaps.iter().zip(&judged.swap_probabilities);
+    std::iter::once((&judged.placed, judged.probability))
+        .chain(rivals.map(|(swap, &probability)| (&swap.placed, probability)))
 }
 
 /// How the cause spreads over the places: each named effect counts by what it explains, each of
@@ -257,7 +254,7 @@ pub(crate) fn locations(answer: &Answer, unknown: bool) -> Vec<LocationShare> {
         }
     } else {
         for judged in &answer.judged {
-            for (placed, probability) in shares_of(answer, judged) {
+            for (placed, probability) in shares_of(judged) {
                 add(&placed.at, probability * judged.relevance.max(1e-3));
             }
         }

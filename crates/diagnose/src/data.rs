@@ -11,6 +11,8 @@ const HELD_BACK: f64 = 1.0 / 3.0;
 
 /// Fewest samples of a record to learn from: below that every small set of effects fits.
 const FEWEST: usize = 20;
+/// Fewest samples of a record to judge by.
+const FEWEST_HELD_BACK: usize = 10;
 
 /// Samples the search may use; more make it slower, not wiser.
 const SEARCH_SAMPLES: usize = 16_000;
@@ -36,7 +38,7 @@ pub(crate) fn divide(
     if train.is_empty() {
         return Err(DiagnoseError::NoRecord);
     }
-    let run = |record: &Record| -> Result<Run, DiagnoseError> {
+    let run = |record: &Record, part: &'static str| -> Result<Run, DiagnoseError> {
         let run = Run::with_outputs(model, record)?;
         for (output, measured) in model.outputs.iter().zip(&run.measured) {
             let values = measured.as_deref().unwrap_or_default();
@@ -44,6 +46,7 @@ pub(crate) fn divide(
                 return Err(DiagnoseError::FlatOutput {
                     record: record.name().to_string(),
                     channel: output.channel.clone(),
+                    part,
                 });
             }
         }
@@ -66,18 +69,14 @@ pub(crate) fn divide(
         } else {
             record.len()
         };
-        if left < FEWEST {
-            return Err(DiagnoseError::TooShort {
-                record: record.name().to_string(),
-                found: left,
-                needed: FEWEST,
-            });
-        }
+        enough(record, left, FEWEST, "learn from")?;
         if check.is_empty() {
+            run(record, "")?;
             let cut = record.len() - held_back(record);
-            data.train.push(run(&record.slice(0..cut)?)?);
+            data.train
+                .push(run(&record.slice(0..cut)?, " in the first two thirds")?);
             let held = record.slice(cut..record.len())?;
-            let mut held_run = run(&held)?;
+            let mut held_run = run(&held, " in the held-back last third")?;
             held_run.first_index = cut;
             data.check.push(held_run);
             data.notes.push(format!(
@@ -88,15 +87,33 @@ pub(crate) fn divide(
             ));
             data.check_times.push(held.time_s().to_vec());
         } else {
-            data.train.push(run(record)?);
+            data.train.push(run(record, "")?);
         }
     }
     for record in check {
-        data.check.push(run(record)?);
+        enough(record, record.len(), FEWEST_HELD_BACK, "judge by")?;
+        data.check.push(run(record, "")?);
         data.check_times.push(record.time_s().to_vec());
     }
     crate::parity::align(&mut data.train, &mut data.check);
     Ok(data)
+}
+
+fn enough(
+    record: &Record,
+    found: usize,
+    needed: usize,
+    purpose: &'static str,
+) -> Result<(), DiagnoseError> {
+    if found >= needed {
+        return Ok(());
+    }
+    Err(DiagnoseError::TooShort {
+        record: record.name().to_string(),
+        found,
+        needed,
+        purpose,
+    })
 }
 
 fn held_back(record: &Record) -> usize {

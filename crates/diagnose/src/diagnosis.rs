@@ -19,7 +19,7 @@ pub struct Diagnosis {
     pub r#where: Where,
     /// Which effect causes it.
     pub verdict: Verdict,
-    /// Every single effect that was tried in earnest, best first.
+    /// The single effects that fit best, at most twelve, by probability and then by gap.
     pub candidates: Vec<CandidateResult>,
     /// The experiment that would tell the rivals apart, if there are any.
     pub next_experiment: Option<String>,
@@ -66,7 +66,8 @@ pub struct ChannelGap {
 pub struct Where {
     /// Over the output channels.
     pub channels: Vec<ChannelShare>,
-    /// Over the places of the model: how much of the discrepancy the best effect there explains.
+    /// Over the places of the model: where the named effects and their rivals sit, each by its
+    /// probability and by what it explains.
     pub locations: Vec<LocationShare>,
     /// Over frequency.
     pub bands: Vec<BandShare>,

@@ -24,22 +24,28 @@ pub enum DiagnoseError {
     /// No record to learn from.
     #[error("no training record was given, needed is at least one")]
     NoRecord,
-    /// A record too short to learn from.
-    #[error("{record}: {found} rows to learn from, needed is {needed} or more")]
+    /// A record too short to learn from or to judge by.
+    #[error("{record}: {found} rows to {purpose}, needed is {needed} or more")]
     TooShort {
         /// Record.
         record: String,
-        /// Rows left to learn from.
+        /// Rows there are.
         found: usize,
         /// Fewest.
         needed: usize,
+        /// `learn from` or `judge by`.
+        purpose: &'static str,
     },
     /// A measured output that never changes has no scale to compare with.
-    #[error("{record}: column \"{channel}\" never changes, needed is a measured motion or force")]
+    #[error(
+        "{record}: column \"{channel}\" never changes{part}, needed is a measured motion or force"
+    )]
     FlatOutput {
         /// Record.
         record: String,
         /// Column.
         channel: String,
+        /// Where, if not in the whole record: ` in the held-back last third`.
+        part: &'static str,
     },
 }

@@ -6,6 +6,10 @@ use simgap_signal::noise::white_noise_std;
 
 use crate::diagnosis::{ChannelGap, Gap};
 
+/// A nominal gap that stands out of the noise by less than this share of its square is none: what
+/// is closed of it would be a ratio of roundings.
+const TINY: f64 = 1e-6;
+
 /// Predictions of the check runs by one model, and their nrmse.
 pub(crate) struct Prediction {
     /// For each run and channel, measured minus predicted.
@@ -50,7 +54,8 @@ pub(crate) fn noise_floor(check: &Problem, corrected: &Prediction) -> Vec<f64> {
         .map(|c| {
             let (mut square, mut count) = (0.0, 0.0);
             for run in &corrected.discrepancy {
-                let sigma = white_noise_std(&run[c]).map_or(0.0, |noise| noise.std);
+                let sigma =
+                    white_noise_std(&run[c]).map_or_else(|_| short_noise(&run[c]), |n| n.std);
                 square += sigma * sigma * run[c].len() as f64;
                 count += run[c].len() as f64;
             }
@@ -59,10 +64,20 @@ pub(crate) fn noise_floor(check: &Problem, corrected: &Prediction) -> Vec<f64> {
         .collect()
 }
 
+/// Noise of a run too short for the robust estimates, from its second differences, whose variance is
+/// 6 σ² for white noise. What moves from sample to sample counts as noise here.
+fn short_noise(values: &[f64]) -> f64 {
+    let squares: Vec<f64> = values
+        .windows(3)
+        .map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2) / 6.0)
+        .collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}
+
 /// 1 − sqrt(max(corrected² − floor², 0) / max(nominal² − floor², tiny)).
 pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
     let left = (corrected * corrected - floor * floor).max(0.0);
-    let there = (nominal * nominal - floor * floor).max(f64::MIN_POSITIVE);
+    let there = (nominal * nominal - floor * floor).max(TINY * nominal * nominal);
     if left == 0.0 {
         1.0
     } else {

@@ -104,6 +104,7 @@ fn trim<T>(list: &mut Vec<T>, share: impl Fn(&T) -> f64) {
     });
 }
 
+/// Bands of the longest check record: the constant part, and the peaks of the spectrum of the rest.
 pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> {
     let std = check.output_std();
     let Some(run) = (0..check.runs.len()).max_by_key(|&r| check.runs[r].len) else {
@@ -131,7 +132,13 @@ pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> 
         return vec![];
     }
     let half_bin = freq_hz.get(1).map_or(0.0, |f| 0.5 * f);
-    let mut list = Vec::new();
+    let constant = constant_share(&prediction.discrepancy[run], &std);
+    let mut list = vec![BandShare {
+        from_hz: 0.0,
+        to_hz: half_bin,
+        label: "constant".into(),
+        share: constant,
+    }];
     let mut left = density.clone();
     for _ in 0..2 * MOST_ENTRIES {
         let Some((peak, &height)) = left.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))
@@ -151,7 +158,7 @@ pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> 
             .take_while(|&i| left[i] > 0.1 * height)
             .last()
             .unwrap_or(peak);
-        let share = left[low..=high].iter().sum::<f64>() / total;
+        let share = (1.0 - constant) * left[low..=high].iter().sum::<f64>() / total;
         left[low..=high].fill(0.0);
         let (from_hz, to_hz) = (
             (freq_hz[low] - half_bin).max(0.0),
@@ -166,6 +173,18 @@ pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> 
     }
     trim(&mut list, |band| band.share);
     list
+}
+
+/// Share of the means in the squared discrepancy; the spectrum is taken about them.
+fn constant_share(signals: &[Vec<f64>], std: &[f64]) -> f64 {
+    let (mut constant, mut all) = (0.0, 0.0);
+    for (signal, s) in signals.iter().zip(std) {
+        let count = signal.len().max(1) as f64;
+        let mean = signal.iter().sum::<f64>() / count;
+        constant += (mean / s).powi(2);
+        all += signal.iter().map(|d| (d / s).powi(2)).sum::<f64>() / count;
+    }
+    if all > 0.0 { constant / all } else { 0.0 }
 }
 
 /// Frequencies worth a name.
@@ -212,7 +231,7 @@ fn marks(check: &Problem, run: usize, spectrum: &dyn Fn(&[f64]) -> Option<Psd>) 
 fn label(marks: &Marks, freq_hz: f64, half_bin: f64) -> String {
     let near = |a: f64, b: f64| (a - b).abs() <= (2.0 * half_bin).max(0.01 * b);
     if freq_hz <= half_bin {
-        return "constant or slow drift".into();
+        return "slow drift".into();
     }
     let nyquist = 0.5 * marks.sample_rate_hz;
     if let Some(f) = marks.excitation_hz {
@@ -259,6 +278,7 @@ pub(crate) fn states(
         }
         let name = match place {
             Location::Between([a, b]) if b == simgap_model::GROUND => a.clone(),
+            Location::Between([a, b]) if a == simgap_model::GROUND => b.clone(),
             Location::Between([a, b]) => format!("{a} to {b}"),
             Location::Mass(name) | Location::Input(name) | Location::Channel(name) => name.clone(),
         };
@@ -273,20 +293,31 @@ pub(crate) fn states(
 }
 
 fn regions(energy: &[f64], variable: &'static str, values: &[f64], at: &str) -> Vec<StateShare> {
-    let peak = values.iter().fold(0.0_f64, |p, v| p.max(v.abs()));
     let total: f64 = energy.iter().sum();
-    if peak <= 0.0 || total <= 0.0 {
+    let velocity = variable == "velocity";
+    let (low, high) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
+            (low.min(v), high.max(v))
+        });
+    // Velocity turns about zero; displacement about the middle of the travel.
+    let (centre, reach) = if velocity {
+        (0.0, high.abs().max(low.abs()))
+    } else {
+        (0.5 * (low + high), 0.5 * (high - low))
+    };
+    if !(reach > 0.0 && total > 0.0) {
         return vec![];
     }
-    let low = if variable == "velocity" {
+    let low = if velocity {
         "velocity reversal"
     } else {
         "middle of the travel"
     };
     let regions = [
-        (low, -0.1 * peak, 0.1 * peak),
-        ("large positive", 0.5 * peak, peak),
-        ("large negative", -peak, -0.5 * peak),
+        (low, centre - 0.1 * reach, centre + 0.1 * reach),
+        ("large positive", centre + 0.5 * reach, centre + reach),
+        ("large negative", centre - reach, centre - 0.5 * reach),
     ];
     regions
         .into_iter()

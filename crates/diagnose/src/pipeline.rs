@@ -5,6 +5,7 @@ use simgap_effects::{Action, Family, Placed, catalogue};
 use simgap_estimate::{Fit, Problem, Start, Weights, fit, fit_initial_states};
 use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
+use simgap_simulate::substeps_for;
 
 use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
@@ -82,7 +83,10 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     }
     let data = divide(request.model, request.train, request.check)?;
     let train = Problem::new(request.model, data.train.clone())?;
-    let check = train.with_runs(data.check.clone());
+    let mut check = train.with_runs(data.check.clone());
+    check.substeps = check
+        .substeps
+        .max(substeps_for(request.model, &check.runs)?);
     let plain = Weights::independent(request.model.outputs.len());
 
     progress("nominal model");

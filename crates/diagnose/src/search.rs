@@ -209,8 +209,9 @@ impl<'a> Search<'a> {
     fn fit_all(&self, starts: &[Start], base: &Base<'_>) -> Result<Vec<Hypothesis>, EstimateError> {
         let mut fitted = starts
             .par_iter()
-            .map(|start| Ok(self.hypothesis(base.fit(start, &self.weights)?)))
-            .collect::<Result<Vec<_>, EstimateError>>()?;
+            // A start from which the plant runs away is no hypothesis.
+            .filter_map(|start| Some(self.hypothesis(base.fit(start, &self.weights).ok()?)))
+            .collect::<Vec<_>>();
         fitted.retain(|hypothesis| hypothesis.fit.objective.is_finite());
         sort(&mut fitted);
         unique(&mut fitted);
@@ -225,10 +226,10 @@ impl<'a> Search<'a> {
             .filter(|(candidate, _)| !base.rules_out(candidate))
             .map(|(candidate, scale)| match prior_score(base, candidate) {
                 // Already adjustable under its prior: its score starts from there.
-                Some(score) => Ok(vec![score]),
-                None => score(linear, candidate, scale),
+                Some(score) => vec![score],
+                None => score(linear, candidate, scale).unwrap_or_default(),
             })
-            .collect::<Result<Vec<_>, EstimateError>>()?;
+            .collect::<Vec<_>>();
         let mut scores: Vec<Score> = scored.into_iter().flatten().collect();
         scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(scores)

@@ -50,6 +50,8 @@ pub(crate) struct Judged {
     pub(crate) probability: f64,
     /// Evidence lost without it.
     pub(crate) worth: f64,
+    /// Probabilities of its rivals, in the order of `swaps`.
+    pub(crate) swap_probabilities: Vec<f64>,
     /// Relative rise of the squared discrepancy without it.
     pub(crate) relevance: f64,
     pub(crate) swaps: Vec<Swap>,
@@ -233,19 +235,20 @@ fn judge_once(
         unique(&mut rivals);
         let mut evidence = vec![set.evidence, subset.evidence];
         evidence.extend(rivals.iter().map(|rival| rival.evidence));
-        let swaps = rivals
+        // The set, the set without the effect, then the rivals.
+        let shares = probabilities(&evidence);
+        let swaps: Vec<Swap> = rivals
             .iter()
-            .filter_map(|rival| {
-                let placed = replacement(set, rival)?.clone();
-                Some(Swap {
-                    placed,
-                    evidence: rival.evidence,
-                })
+            .map(|rival| Swap {
+                // A rival that is the set with another start has nothing to put in its place.
+                placed: replacement(set, rival).unwrap_or(&set.effects()[i]).clone(),
+                evidence: rival.evidence,
             })
             .collect();
         list.push(Judged {
             placed: set.effects()[i].clone(),
-            probability: probabilities(&evidence)[0],
+            probability: shares[0],
+            swap_probabilities: shares[2..].to_vec(),
             worth: set.evidence - subset.evidence,
             relevance: rise(&subset.fit, &set.fit),
             swaps,

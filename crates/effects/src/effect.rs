@@ -73,7 +73,7 @@ impl Parameter {
 pub struct SiteScale {
     /// rms of the displacement across the site about its mean, m.
     pub displacement_m: f64,
-    /// rms of the velocity across the site, m/s.
+    /// rms of the velocity across the site about its mean, m/s.
     pub velocity_m_per_s: f64,
     /// Typical force at the site, N: rms of what accelerates the masses it joins.
     pub force_n: f64,

@@ -72,7 +72,9 @@ impl Layout {
             .map(|p| (p, f64::INFINITY))
             .chain(start.nominal.iter().map(|p| (p, prior)))
         {
-            for (parameter, &value) in placed.effect.parameters().iter().zip(&placed.values) {
+            let mut values = placed.values.clone();
+            placed.effect.make_physical(&mut values);
+            for (parameter, &value) in placed.effect.parameters().iter().zip(&values) {
                 layout.push_parameter(parameter, value, std);
             }
         }

@@ -211,7 +211,7 @@ impl Problem {
         })
     }
 
-    /// Largest of the forces that act around a place, N: inertia, inputs, loads, outputs in force.
+    /// Typical force around a place, N: inertia of the masses it joins, else the measured forces.
     fn force_scale(&self, at: &Location, acceleration: f64) -> f64 {
         let names: Vec<&String> = match at {
             Location::Between(pair) => pair.iter().collect(),

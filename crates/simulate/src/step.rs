@@ -17,7 +17,7 @@ const MOST_SUBSTEPS: usize = 16;
 /// the Nyquist frequency and for the content of the inputs. The linear part needs none.
 ///
 /// ```text
-/// substeps = ⌈max(ω_r, ω_u) Δt / 0.2⌉,  ω_u² = Σ (Δu)² / (Δt² Σ u²)
+/// substeps = ⌈max(ω_r, ω_u) Δt / 0.2⌉,  ω_u² = Σ (Δu)² / (Δt² Σ (u − ū)²)
 /// ```
 ///
 /// # Errors

@@ -303,7 +303,11 @@ fn dry_force(law: &dyn ForceLaw, start: f64, free: f64, compliance: f64) -> Dry 
         return slid;
     }
     if (free - start).abs() <= compliance * at_rest {
-        return stuck;
+        // Once stopped, it holds against the other forces; the mean also brakes what was moving.
+        return Dry {
+            mean: stuck.mean,
+            end: (free - start) / compliance,
+        };
     }
     let share = start / (start - ahead);
     let force = level(0.5 * (start.abs() + ahead.abs()));
