@@ -52,18 +52,9 @@ pub(crate) struct Judged {
     pub(crate) worth: f64,
     /// Probabilities of its rivals, in the order of `swaps`.
     pub(crate) swap_probabilities: Vec<f64>,
-    /// Relative rise of the squared discrepancy without it.
+    /// Relative fall of the squared discrepancy with it.
     pub(crate) relevance: f64,
     pub(crate) swaps: Vec<Swap>,
-}
-
-/// Mean over the channels of V_c relative to a reference.
-fn relative(variance: &[f64], reference: &[f64]) -> f64 {
-    let ratios = variance
-        .iter()
-        .zip(reference)
-        .map(|(v, r)| v / r.max(f64::MIN_POSITIVE));
-    ratios.sum::<f64>() / variance.len().max(1) as f64
 }
 
 /// Whether an effect moves an output by more than the simulation itself may be off: `larger` has
@@ -76,17 +67,16 @@ fn relevant(problem: &Problem, larger: &Fit, smaller: &Fit) -> bool {
         .zip(problem.output_std())
         .map(|((poorer, better), std)| (poorer - better).max(0.0).sqrt() / std)
         .fold(0.0, f64::max);
-    moved > MOVES && rise(smaller, larger) > RELEVANT
+    moved > MOVES && fall(smaller, larger) > RELEVANT
 }
 
-/// How much the squared discrepancy rises, relative, when going from one fit to a poorer one.
-pub(crate) fn rise(poorer: &Fit, better: &Fit) -> f64 {
-    // The channel that profits most decides: an effect may show on one channel alone.
+/// Relative fall of the squared discrepancy from a poorer fit to a better one, on the channel that
+/// profits most: an effect may show on one channel alone.
+pub(crate) fn fall(poorer: &Fit, better: &Fit) -> f64 {
     let ratios = poorer.variance.iter().zip(&better.variance);
-    let best = ratios
+    ratios
         .map(|(p, b)| 1.0 - b / p.max(f64::MIN_POSITIVE))
-        .fold(f64::MIN, f64::max);
-    best.max(1.0 - relative(&better.variance, &poorer.variance))
+        .fold(f64::MIN, f64::max)
 }
 
 /// The set without its i-th effect, fitted again.
@@ -250,7 +240,7 @@ fn judge_once(
             probability: shares[0],
             swap_probabilities: shares[2..].to_vec(),
             worth: set.evidence - subset.evidence,
-            relevance: rise(&subset.fit, &set.fit),
+            relevance: fall(&subset.fit, &set.fit),
             swaps,
         });
         let lead = better

@@ -13,7 +13,6 @@ mod score;
 
 pub use fit::{Fit, Interval, fit, fit_initial_states};
 pub use layout::{Candidate, Start};
-pub use linearise::Linearised;
 pub use problem::{Problem, Weights};
 pub use score::{Base, Score, linearise_at, score};
 

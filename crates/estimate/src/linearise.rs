@@ -11,9 +11,9 @@ const DIFFERENCE: f64 = 1e-4;
 pub(crate) type Signals = Vec<Vec<f64>>;
 
 /// Discrepancies (measured minus predicted) and the sensitivities of the predictions.
-pub struct Linearised {
+pub(crate) struct Linearised {
     /// For each run and channel, measured minus predicted.
-    pub discrepancy: Vec<Signals>,
+    pub(crate) discrepancy: Vec<Signals>,
     /// For each run, for each shared entry of θ and then each entry of the run's own initial
     /// state, the derivative of the prediction by θ / scale.
     pub(crate) columns: Vec<Vec<Signals>>,

@@ -6,11 +6,6 @@ use faer::{Mat, Side};
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Signals};
 
-/// Index in θ of each column of a run.
-pub(crate) fn entries(layout: &Layout, run: usize) -> Vec<usize> {
-    layout.entries(run).collect()
-}
-
 /// Weighted inner product of two sets of signals.
 pub(crate) fn inner(a: &Signals, b: &Signals, weights: &[f64]) -> f64 {
     let dot = |x: &[f64], y: &[f64]| -> f64 {
@@ -48,7 +43,7 @@ pub(crate) fn normal_equations(
     let mut hessian = Mat::zeros(len, len);
     let mut gradient = vec![0.0; len];
     for (run, columns) in at.columns.iter().enumerate() {
-        let index = entries(layout, run);
+        let index = layout.entries(run).collect::<Vec<_>>();
         for (a, column) in columns.iter().enumerate() {
             gradient[index[a]] += inner(column, &at.discrepancy[run], weights);
             for (b, other) in columns.iter().enumerate().take(a + 1) {

@@ -17,7 +17,7 @@ use simgap_effects::{Effect, Placed, SiteScale};
 use crate::fit::{Merit, fit_with, state_scale};
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Signals, linearise};
-use crate::normal::{entries, inner, normal_equations};
+use crate::normal::{inner, normal_equations};
 use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
@@ -35,6 +35,8 @@ pub struct Base<'a> {
     hessian: Mat<f64>,
     gradient: Vec<f64>,
     independent_samples: f64,
+    /// rᵀWr of (2).
+    energy: f64,
 }
 
 /// What a further effect would bring.
@@ -62,7 +64,13 @@ pub fn linearise_at<'a>(
     let channel_weights = merit.weights(&merit.variance(&at.discrepancy));
     let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
     let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
+    let energy = at
+        .discrepancy
+        .iter()
+        .map(|run| inner(run, run, &channel_weights))
+        .sum();
     Ok(Base {
+        energy,
         problem,
         fit,
         layout,
@@ -151,29 +159,20 @@ impl Base<'_> {
             return Ok(None);
         };
         let mut values = shape.to_vec();
-        let mut reached = 1.0_f64;
+        let mut absent = false;
         for (&k, a) in sizes.iter().zip(&amplitude) {
             let neutral = parameters[k].neutral.unwrap_or(0.0);
             let wanted = neutral + a * (shape[k] - neutral);
             values[k] = wanted.clamp(parameters[k].lower, parameters[k].upper);
             if values[k] == neutral || !wanted.is_finite() {
-                reached = reached.min(0.0);
+                absent = true;
             }
         }
-        if reached <= 0.0 && sizes.len() == 1 {
+        if absent && sizes.len() == 1 {
             return Ok(None);
         }
         candidate.effect.make_physical(&mut values);
-        let total: f64 = (0..self.at.discrepancy.len())
-            .map(|run| {
-                inner(
-                    &self.at.discrepancy[run],
-                    &self.at.discrepancy[run],
-                    &self.weights,
-                )
-            })
-            .sum();
-        let share = (energy / total).clamp(0.0, 1.0 - 1e-9);
+        let share = (energy / self.energy).clamp(0.0, 1.0 - 1e-9);
         let gain = -0.5 * self.independent_samples * (1.0 - share).ln();
         let start = Placed {
             effect: candidate.effect,
@@ -229,11 +228,10 @@ impl Base<'_> {
         let mut own = Mat::<f64>::zeros(k, k);
         let mut right = vec![0.0; k];
         for run in 0..self.at.discrepancy.len() {
-            let index = entries(&self.layout, run);
             for (j, column) in columns.iter().enumerate() {
                 right[j] += inner(&column[run], &self.at.discrepancy[run], &self.weights);
-                for (row, nuisance) in index.iter().zip(&self.at.columns[run]) {
-                    cross[(*row, j)] += inner(nuisance, &column[run], &self.weights);
+                for (row, nuisance) in self.layout.entries(run).zip(&self.at.columns[run]) {
+                    cross[(row, j)] += inner(nuisance, &column[run], &self.weights);
                 }
                 for (i, other) in columns.iter().enumerate() {
                     own[(i, j)] += inner(&other[run], &column[run], &self.weights);

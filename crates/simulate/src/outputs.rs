@@ -21,6 +21,16 @@ pub(crate) struct BaseMotion<'a> {
     pub(crate) acceleration: &'a [f64],
 }
 
+/// Value at node a minus value at node b.
+pub(crate) fn across([a, b]: [Node; 2], dofs: &[f64], bases: &[f64]) -> f64 {
+    let value = |node| match node {
+        Node::Ground => 0.0,
+        Node::Dof(i) => dofs[i],
+        Node::Base(i) => bases[i],
+    };
+    value(a) - value(b)
+}
+
 impl OutputPlan {
     pub(crate) fn needs_acceleration(&self) -> bool {
         self.kind == OutputKind::Acceleration
@@ -32,14 +42,7 @@ impl OutputPlan {
         acceleration: &[f64],
         base: &BaseMotion<'_>,
     ) -> f64 {
-        let across = |dofs: &[f64], bases: &[f64]| {
-            let value = |node| match node {
-                Node::Ground => 0.0,
-                Node::Dof(i) => dofs[i],
-                Node::Base(i) => bases[i],
-            };
-            value(self.a) - value(self.b)
-        };
+        let across = |dofs: &[f64], bases: &[f64]| across([self.a, self.b], dofs, bases);
         match self.kind {
             OutputKind::Displacement => across(at.displacement, base.displacement),
             OutputKind::Velocity => across(at.velocity, base.velocity),

@@ -4,7 +4,7 @@ use simgap_effects::{Action, Placed, Sampled, SignalMap};
 use simgap_integrate::exact::{Element, ExactPropagator, Excitation, ForceLaw, MemberMotion};
 use simgap_model::{InputKind, Location, Model, Node};
 
-use crate::outputs::{BaseMotion, OutputPlan, output_plans};
+use crate::outputs::{BaseMotion, OutputPlan, across, output_plans};
 use crate::{Run, SimulateError};
 
 /// A model with its effects.
@@ -168,19 +168,12 @@ impl Simulator {
         initial: &[f64],
         at: &Location,
     ) -> Result<MemberPath, SimulateError> {
-        let [a, b] = ends(&self.model, at)?;
+        let ends = ends(&self.model, at)?;
         let mut path = MemberPath::default();
         let mut acceleration = vec![0.0; self.model.dof_count()];
         self.march(run, initial, |propagator, at, base| {
             propagator.acceleration(at, &mut acceleration);
-            let across = |dofs: &[f64], bases: &[f64]| {
-                let value = |node| match node {
-                    Node::Ground => 0.0,
-                    Node::Dof(i) => dofs[i],
-                    Node::Base(i) => bases[i],
-                };
-                value(a) - value(b)
-            };
+            let across = |dofs: &[f64], bases: &[f64]| across(ends, dofs, bases);
             path.displacement
                 .push(across(at.displacement, base.displacement));
             path.velocity.push(across(at.velocity, base.velocity));

@@ -59,11 +59,8 @@ impl Effect for AlternatingGain {
         }]
     }
 
-    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        {
-            let _ = scale;
-            vec![vec![0.02]]
-        }
+    fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
+        vec![vec![0.02]]
     }
 
     fn action(&self, values: &[f64]) -> Action {
