@@ -50,8 +50,11 @@ pub struct Parameter {
     pub lower: f64,
     /// Largest physical value.
     pub upper: f64,
-    /// Value at which the effect vanishes; `None` for a parameter that only shapes it.
+    /// Value at which the effect vanishes, infinite for a limit that is never reached; `None` for a
+    /// parameter that only shapes it.
     pub neutral: Option<f64>,
+    /// Whether every record has a value of its own: the phase of a clock, the state at the start.
+    pub per_record: bool,
 }
 
 impl Parameter {
@@ -64,9 +67,76 @@ impl Parameter {
             lower: 0.0,
             upper: f64::INFINITY,
             neutral: Some(1.0),
+            per_record: false,
+        }
+    }
+
+    /// A size: without effect at zero, of either sign unless bounded.
+    #[must_use]
+    pub const fn size(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Parameter {
+        Parameter {
+            name,
+            unit,
+            lower,
+            upper,
+            neutral: Some(0.0),
+            per_record: false,
+        }
+    }
+
+    /// A limit: without effect at infinity.
+    #[must_use]
+    pub const fn limit(name: &'static str, unit: &'static str) -> Parameter {
+        Parameter {
+            name,
+            unit,
+            lower: 0.0,
+            upper: f64::INFINITY,
+            neutral: Some(f64::INFINITY),
+            per_record: false,
+        }
+    }
+
+    /// A value that only shapes the effect.
+    #[must_use]
+    pub const fn shape(
+        name: &'static str,
+        unit: &'static str,
+        lower: f64,
+        upper: f64,
+    ) -> Parameter {
+        Parameter {
+            name,
+            unit,
+            lower,
+            upper,
+            neutral: None,
+            per_record: false,
+        }
+    }
+
+    /// A value that every record has of its own.
+    #[must_use]
+    pub const fn of_record(self) -> Parameter {
+        Parameter {
+            per_record: true,
+            ..self
         }
     }
 }
+
+/// An effect with a clock of its own: it is proportional to `amplitude · sin(2π f t + phase)`, each
+/// record with a phase of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Clock {
+    /// Place of the amplitude among the parameters.
+    pub amplitude: usize,
+    /// Place of the phase, rad.
+    pub phase: usize,
+}
+
+/// Strongest lines that starting frequencies are taken from.
+pub const LINES: usize = 4;
 
 /// Typical sizes at a site, from which an effect takes its starting values.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,15 +153,65 @@ pub struct SiteScale {
     pub time_step_s: f64,
     /// Length of the longest record, s.
     pub duration_s: f64,
+    /// Smallest and largest displacement across the site, m.
+    pub displacement_range_m: [f64; 2],
+    /// Smallest and largest value of the channel as measured, in model units.
+    pub signal_range: [f64; 2],
+    /// Step of the values of the channel, in model units; zero where there is none to be seen.
+    pub signal_step: f64,
+    /// Stiffness of the nominal springs at the site, N/m.
+    pub stiffness_n_per_m: f64,
+    /// Mass of the lighter of the masses at the site, kg.
+    pub mass_kg: f64,
+    /// Strongest lines of what the nominal model leaves (channel sites: of this channel), Hz; zero
+    /// where there are fewer.
+    pub lines_hz: [f64; LINES],
+    /// Strongest lines of the motion, Hz.
+    pub motion_hz: [f64; LINES],
+}
+
+impl SiteScale {
+    /// A scale of the sizes every site has; the rest is unknown.
+    #[must_use]
+    pub fn plain(displacement_m: f64, velocity_m_per_s: f64, force_n: f64) -> SiteScale {
+        SiteScale {
+            displacement_m,
+            velocity_m_per_s,
+            force_n,
+            signal: 1.0,
+            time_step_s: 1e-3,
+            duration_s: 1.0,
+            displacement_range_m: [-1.4 * displacement_m, 1.4 * displacement_m],
+            signal_range: [-1.4, 1.4],
+            signal_step: 0.0,
+            stiffness_n_per_m: force_n / displacement_m,
+            mass_kg: 1.0,
+            lines_hz: [0.0; LINES],
+            motion_hz: [0.0; LINES],
+        }
+    }
 }
 
 /// Changes the linear model at a place.
 pub type ModelChange = Box<dyn Fn(&mut Model, &Location) + Send + Sync>;
 
+/// Makes a force law that depends on the members of the model at its place.
+pub type LawOfModel = Box<dyn Fn(&Model, &Location) -> Box<dyn ForceLaw> + Send + Sync>;
+
 /// What an effect does, with its parameters filled in.
 pub enum Action {
     /// Changes the linear model.
     Model(ModelChange),
+    /// Adds one mass and its members to the linear model.
+    Mode {
+        /// Appends the mass.
+        change: ModelChange,
+        /// Displacement (m) and velocity (m/s) of the mass at the first sample, beyond those with
+        /// which it would follow the others at rest.
+        start: [f64; 2],
+    },
+    /// Adds a force that depends on the members at the place, all changes of the model made.
+    Member(LawOfModel),
     /// Adds a force between two nodes, or between a mass and the ground.
     Force(Box<dyn ForceLaw>),
     /// Changes an input before it reaches the plant.
@@ -138,6 +258,24 @@ pub trait Effect: Sync + Send {
         vec![]
     }
 
+    /// Makes the events of an effect that strikes at random (lost samples, spikes), for generated
+    /// cases: the signal with its events, from numbers evenly drawn in 0 to 1. `None` for an effect
+    /// that its [`Effect::action`] describes in full.
+    fn strike(
+        &self,
+        values: &[f64],
+        signal: &[f64],
+        random: &mut dyn FnMut() -> f64,
+    ) -> Option<Vec<f64>> {
+        let _ = (values, signal, random);
+        None
+    }
+
+    /// The clock of an effect that has one of its own.
+    fn clock(&self) -> Option<Clock> {
+        None
+    }
+
     /// Moves values to the nearest physical ones.
     fn make_physical(&self, values: &mut [f64]) {
         for (value, parameter) in values.iter_mut().zip(self.parameters()) {
@@ -147,6 +285,11 @@ pub trait Effect: Sync + Send {
 
     /// What the effect does with these parameter values (as many as [`Effect::parameters`]).
     fn action(&self, values: &[f64]) -> Action;
+
+    /// Kinds that this one is easily mistaken for, and why.
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
 
     /// The experiment that shows this effect best against its rivals.
     fn experiment(&self) -> &'static str;

@@ -12,7 +12,9 @@ mod place;
 mod signal_map;
 
 pub use catalogue::{catalogue, find};
-pub use effect::{Action, Effect, Family, ModelChange, Parameter, SiteKind, SiteScale};
+pub use effect::{
+    Action, Clock, Effect, Family, LINES, LawOfModel, ModelChange, Parameter, SiteKind, SiteScale,
+};
 pub use error::EffectError;
 pub use place::{Placed, sites};
 pub use signal_map::{Sampled, SignalMap};

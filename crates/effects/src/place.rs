@@ -13,11 +13,48 @@ pub struct Placed {
     pub effect: &'static dyn Effect,
     /// Where it sits.
     pub at: Location,
-    /// Values in the order of [`Effect::parameters`].
+    /// Values in the order of [`Effect::parameters`]; of a parameter that every record has of its
+    /// own, that of the first.
     pub values: Vec<f64>,
+    /// For each record, the values of its own parameters in their order; empty where `values` holds
+    /// for all.
+    pub of_record: Vec<Vec<f64>>,
 }
 
 impl Placed {
+    /// An effect with values that hold for every record.
+    #[must_use]
+    pub fn new(effect: &'static dyn Effect, at: Location, values: Vec<f64>) -> Placed {
+        Placed {
+            effect,
+            at,
+            values,
+            of_record: vec![],
+        }
+    }
+
+    /// The effect as it is in one record.
+    #[must_use]
+    pub fn in_record(&self, record: usize) -> Placed {
+        let mut placed = Placed::new(self.effect, self.at.clone(), self.values.clone());
+        if let Some(own) = self.of_record.get(record) {
+            let places = self.own_places();
+            for (place, value) in places.into_iter().zip(own) {
+                placed.values[place] = *value;
+            }
+        }
+        placed
+    }
+
+    /// Places of the parameters that every record has of its own.
+    #[must_use]
+    pub fn own_places(&self) -> Vec<usize> {
+        let parameters = self.effect.parameters().iter().enumerate();
+        parameters
+            .filter_map(|(i, parameter)| parameter.per_record.then_some(i))
+            .collect()
+    }
+
     /// Gives an entry of a model file its meaning.
     ///
     /// # Errors
@@ -81,11 +118,7 @@ impl Placed {
             });
         }
         model.check_location(&entry.at, &format!("[[effect]] \"{}\"", entry.kind))?;
-        Ok(Placed {
-            effect,
-            at: entry.at.clone(),
-            values,
-        })
+        Ok(Placed::new(effect, entry.at.clone(), values))
     }
 
     /// The entry as a model file writes it.

@@ -10,12 +10,36 @@ pub struct Sampled<'a> {
     /// Number of the first value on the clock of the converter: a stretch cut out of a record keeps
     /// the even and odd samples of the record.
     pub first_index: usize,
+    /// Time of the first value on the clock of the record, s.
+    pub start_s: f64,
+    /// What was measured of this signal, where it was: a chain that loses samples shows in the
+    /// record which ones.
+    pub measured: Option<&'a [f64]>,
+}
+
+impl<'a> Sampled<'a> {
+    /// A signal that begins with its record.
+    #[must_use]
+    pub fn from_start(values: &'a [f64], time_step_s: f64) -> Sampled<'a> {
+        Sampled {
+            values,
+            time_step_s,
+            first_index: 0,
+            start_s: 0.0,
+            measured: None,
+        }
+    }
 }
 
 /// Turns the true signal into what the chain delivers, sample by sample.
 pub trait SignalMap: Send + Sync {
     /// The delivered signal, as long as the true one.
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64>;
+
+    /// Whether the map moves in steps (rounding), so that it has no derivative to go by.
+    fn is_stepped(&self) -> bool {
+        false
+    }
 }
 
 impl Sampled<'_> {
@@ -75,12 +99,7 @@ mod tests {
     fn verify_interpolation_is_exact_for_degree_five() {
         let poly = |x: f64| 1.0 - 2.0 * x + 0.3 * x.powi(2) - 0.02 * x.powi(4) + 0.001 * x.powi(5);
         let values: Vec<f64> = (0..12).map(|i| poly(f64::from(i))).collect();
-        let signal = Sampled {
-            values: &values,
-            time_step_s: 1.0,
-
-            first_index: 0,
-        };
+        let signal = Sampled::from_start(&values, 1.0);
         for k in 0..=110 {
             let p = f64::from(k) * 0.1;
             assert!((signal.at(p) - poly(p)).abs() < 1e-10, "{p}");
@@ -99,12 +118,7 @@ mod tests {
             let w = std::f64::consts::PI * share_of_nyquist;
             let bound = 5.0 / 1024.0 * w.powi(6);
             let values: Vec<f64> = (0..100).map(|i| (w * f64::from(i)).sin()).collect();
-            let signal = Sampled {
-                values: &values,
-                time_step_s: 1.0,
-
-                first_index: 0,
-            };
+            let signal = Sampled::from_start(&values, 1.0);
             for k in 100..900 {
                 let p = f64::from(k) * 0.1;
                 let error = (signal.at(p) - (w * p).sin()).abs();

@@ -13,11 +13,12 @@ use simgap_model::{Location, Model};
 /// What an action does to the plant or the signal, as numbers that can be compared.
 fn trace(action: &Action, at: &Location) -> Vec<f64> {
     match action {
-        Action::Model(change) => {
+        Action::Model(change) | Action::Mode { change, .. } => {
             let mut model = model();
             change(&mut model, at);
             matrix_entries(&model)
         }
+        Action::Member(build) => trace(&Action::Force(build(&model(), at)), at),
         Action::Force(law) => {
             let mut trace = Vec::new();
             for displacement in [-0.004, -0.001, 0.0, 0.003] {
@@ -37,8 +38,8 @@ fn trace(action: &Action, at: &Location) -> Vec<f64> {
 /// The same without the effect.
 fn untouched(action: &Action) -> Vec<f64> {
     match action {
-        Action::Model(_) => matrix_entries(&model()),
-        Action::Force(_) => vec![0.0; 40],
+        Action::Model(_) | Action::Mode { .. } => matrix_entries(&model()),
+        Action::Force(_) | Action::Member(_) => vec![0.0; 40],
         Action::Input(_) | Action::Output(_) | Action::Sampling(_) => signal(),
     }
 }
@@ -161,7 +162,7 @@ fn verify_ranges_hold_the_neutral_value() {
             assert!(parameter.lower < parameter.upper, "{place}");
             if let Some(neutral) = parameter.neutral {
                 let range = parameter.lower..=parameter.upper;
-                assert!(neutral.is_finite() && range.contains(&neutral), "{place}");
+                assert!(range.contains(&neutral), "{place}");
                 vanishes = true;
             }
         }
@@ -186,12 +187,14 @@ fn verify_neutral_values_change_nothing() {
 #[test]
 fn verify_starts_are_inside_the_range_and_visible() {
     let small = SiteScale {
-        displacement_m: 1e-6,
-        velocity_m_per_s: 1e-4,
-        force_n: 1e-2,
         signal: 1e-6,
+        signal_range: [-1e-6, 2e-6],
+        signal_step: 1e-8,
         time_step_s: 1e-5,
         duration_s: 0.5,
+        lines_hz: [700.0, 0.0, 0.0, 0.0],
+        motion_hz: [90.0, 0.0, 0.0, 0.0],
+        ..SiteScale::plain(1e-6, 1e-4, 1e-2)
     };
     for effect in catalogue() {
         let kind = effect.kind();
@@ -224,7 +227,7 @@ fn verify_families_act_where_they_belong() {
         let fits = match effect.family() {
             Family::NominalParameter => matches!(action, Action::Model(_) | Action::Input(_)),
             Family::Force | Family::Dynamics => {
-                matches!(action, Action::Model(_) | Action::Force(_))
+                !matches!(action, Action::Output(_) | Action::Sampling(_))
             }
             Family::Measurement => matches!(
                 action,
@@ -236,7 +239,7 @@ fn verify_families_act_where_they_belong() {
         let fits = match action {
             Action::Input(_) => place.starts_with("input"),
             Action::Output(_) | Action::Sampling(_) => place.starts_with("channel"),
-            Action::Force(_) | Action::Model(_) => {
+            Action::Force(_) | Action::Model(_) | Action::Mode { .. } | Action::Member(_) => {
                 place.starts_with("between") || place.starts_with("mass")
             }
         };
@@ -303,11 +306,7 @@ fn verify_every_kind_has_sites_and_survives_a_model_file() {
         assert!(!places.is_empty(), "{} has no site", effect.kind());
         for at in places {
             for values in effect.starts(&scale()) {
-                let placed = Placed {
-                    effect,
-                    at: at.clone(),
-                    values,
-                };
+                let placed = Placed::new(effect, at.clone(), values);
                 let mut written = model.clone();
                 written.effects.push(placed.to_entry());
                 let read = Model::from_toml(&written.to_toml().unwrap()).unwrap();

@@ -97,12 +97,7 @@ fn verify_values_that_are_no_numbers_are_refused() {
             for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 let mut values = good.clone();
                 values[index] = bad;
-                let entry = Placed {
-                    effect,
-                    at: at.clone(),
-                    values,
-                }
-                .to_entry();
+                let entry = Placed::new(effect, at.clone(), values).to_entry();
                 let refused = Placed::from_entry(&model, &entry);
                 assert!(
                     matches!(refused, Err(EffectError::OutOfRange { .. })),
@@ -123,11 +118,11 @@ fn refused(entry: &EffectEntry) -> String {
 
 #[test]
 fn verify_a_place_that_is_not_in_the_model_is_refused() {
-    let mut entry = Placed {
-        effect: common::effect("coulomb_friction"),
-        at: Location::Between(["load".into(), "ceiling".into()]),
-        values: vec![1.0],
-    }
+    let mut entry = Placed::new(
+        common::effect("coulomb_friction"),
+        Location::Between(["load".into(), "ceiling".into()]),
+        vec![1.0],
+    )
     .to_entry();
     assert!(refused(&entry).contains("ceiling"), "{}", refused(&entry));
     entry.at = Location::Between(["load".into(), "load".into()]);

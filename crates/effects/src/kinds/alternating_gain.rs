@@ -56,6 +56,7 @@ impl Effect for AlternatingGain {
             lower: -1.0,
             upper: 1.0,
             neutral: Some(0.0),
+            per_record: false,
         }]
     }
 

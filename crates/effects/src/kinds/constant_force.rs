@@ -50,6 +50,7 @@ impl Effect for ConstantForce {
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
             neutral: Some(0.0),
+            per_record: false,
         }]
     }
 

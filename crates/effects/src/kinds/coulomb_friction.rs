@@ -53,6 +53,7 @@ impl Effect for CoulombFriction {
             lower: 0.0,
             upper: f64::INFINITY,
             neutral: Some(0.0),
+            per_record: false,
         }]
     }
 

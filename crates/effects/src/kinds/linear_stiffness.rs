@@ -39,6 +39,7 @@ impl Effect for LinearStiffness {
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
             neutral: Some(0.0),
+            per_record: false,
         }]
     }
 

@@ -49,6 +49,7 @@ impl Effect for QuadraticDamping {
             lower: 0.0,
             upper: f64::INFINITY,
             neutral: Some(0.0),
+            per_record: false,
         }]
     }
 

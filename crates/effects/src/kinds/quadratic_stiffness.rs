@@ -49,6 +49,7 @@ impl Effect for QuadraticStiffness {
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
             neutral: Some(0.0),
+            per_record: false,
         }]
     }
 

@@ -51,6 +51,7 @@ impl Effect for SensorDelay {
             lower: 0.0,
             upper: f64::INFINITY,
             neutral: Some(0.0),
+            per_record: false,
         }]
     }
 

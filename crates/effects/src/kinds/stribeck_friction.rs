@@ -60,6 +60,7 @@ impl Effect for StribeckFriction {
                 lower: 0.0,
                 upper: f64::INFINITY,
                 neutral: Some(0.0),
+                per_record: false,
             },
             Parameter {
                 name: "breakaway_force_n",
@@ -67,6 +68,7 @@ impl Effect for StribeckFriction {
                 lower: 0.0,
                 upper: f64::INFINITY,
                 neutral: Some(0.0),
+                per_record: false,
             },
             Parameter {
                 name: "stribeck_velocity_m_per_s",
@@ -74,6 +76,7 @@ impl Effect for StribeckFriction {
                 lower: 1e-9,
                 upper: f64::INFINITY,
                 neutral: None,
+                per_record: false,
             },
         ]
     }

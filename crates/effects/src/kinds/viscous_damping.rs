@@ -39,6 +39,7 @@ impl Effect for ViscousDamping {
             lower: 0.0,
             upper: f64::INFINITY,
             neutral: Some(0.0),
+            per_record: false,
         }]
     }
 

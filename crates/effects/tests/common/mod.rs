@@ -58,12 +58,17 @@ pub(crate) fn model() -> Model {
 /// Typical sizes, each different from the others so that no two can be mistaken.
 pub(crate) fn scale() -> SiteScale {
     SiteScale {
-        displacement_m: 0.002,
-        velocity_m_per_s: 0.03,
-        force_n: 50.0,
         signal: 0.7,
         time_step_s: 0.001,
         duration_s: 20.0,
+        displacement_range_m: [-0.004, 0.005],
+        signal_range: [-1.1, 1.3],
+        signal_step: 0.01,
+        stiffness_n_per_m: 9000.0,
+        mass_kg: 2.0,
+        lines_hz: [3.1, 12.7, 0.0, 0.0],
+        motion_hz: [2.3, 0.0, 0.0, 0.0],
+        ..SiteScale::plain(0.002, 0.03, 50.0)
     }
 }
 
@@ -99,10 +104,5 @@ pub(crate) fn force(law: &dyn ForceLaw, displacement: f64, velocity: f64) -> f64
 
 /// A signal sent through a map.
 pub(crate) fn through(map: &dyn SignalMap, values: &[f64], time_step_s: f64) -> Vec<f64> {
-    map.apply(Sampled {
-        values,
-        time_step_s,
-
-        first_index: 0,
-    })
+    map.apply(Sampled::from_start(values, time_step_s))
 }

@@ -1,7 +1,7 @@
 //! What the propagation needs to know of a nonlinear force.
 
 /// Motion across a member, and when.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MemberMotion {
     /// d = x_a − x_b, m.
     pub displacement: f64,
@@ -14,11 +14,31 @@ pub struct MemberMotion {
 /// A force carried between two nodes, positive when it resists a positive displacement of a from
 /// b, as a spring's `k d` does: it pushes a with −F and b with +F.
 ///
+/// A law may remember its past in one number, which is handed to it and taken back step by step.
+///
 /// A law has a single-valued part, and may have a dry part: a force of either sign up to a level,
 /// which holds the member still if it can (a set-valued force at zero velocity).
 pub trait ForceLaw: Send + Sync {
     /// The single-valued part, N.
     fn force(&self, motion: MemberMotion) -> f64;
+
+    /// Whether the force depends on the way the member came, not on where it is alone.
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// The memory at the first sample (a force, a displacement: what the law makes of it).
+    fn first_memory(&self) -> f64 {
+        0.0
+    }
+
+    /// For a law that [`ForceLaw::remembers`]: the single-valued part at the end of a move and the
+    /// memory it leaves, from the memory at the start of the move. The way between is taken to be
+    /// monotone.
+    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+        let _ = from;
+        (self.force(to), memory)
+    }
 
     /// Largest dry force at the sliding speed |v| (m/s), N, not negative; `None` for a law
     /// without a dry part.

@@ -42,6 +42,10 @@ pub(super) struct Plant<'a> {
     dry_force: Vec<f64>,
     /// D of each element at the end of the last step.
     pub(super) dry_end: Vec<f64>,
+    /// Which elements remember, what, and where they were at the start of the step.
+    remembers: Vec<bool>,
+    memory: Vec<f64>,
+    from: Vec<MemberMotion>,
     /// Velocity across each element at the two ends of the step.
     start_velocity: Vec<f64>,
     end_velocity: Vec<f64>,
@@ -117,6 +121,9 @@ impl<'a> Plant<'a> {
                 .iter()
                 .map(|e| e.law.dry_level(0.0).is_some())
                 .collect(),
+            remembers: elements.iter().map(|e| e.law.remembers()).collect(),
+            memory: elements.iter().map(|e| e.law.first_memory()).collect(),
+            from: vec![MemberMotion::default(); m],
             smooth: vec![0.0; m],
             dry_force: vec![0.0; m],
             dry_end: vec![0.0; m],
@@ -146,7 +153,12 @@ impl<'a> Plant<'a> {
                 velocity: across(&state[n..2 * n], &base[bases..]),
                 time_s,
             };
-            self.smooth[i] = element.law.force(motion);
+            self.from[i] = motion;
+            (self.smooth[i], self.memory[i]) = if self.remembers[i] {
+                element.law.follow(self.memory[i], motion, motion)
+            } else {
+                (element.law.force(motion), self.memory[i])
+            };
             let level = element.law.dry_level(motion.velocity.abs()).unwrap_or(0.0);
             // At rest the dry force balances what it can of the excitation across it.
             let at_rest = across(force, &vec![0.0; bases]).clamp(-level, level);
@@ -188,6 +200,33 @@ impl<'a> Plant<'a> {
                 break;
             }
         }
+        for i in 0..m {
+            if self.remembers[i] {
+                self.remember(i, time_s);
+            }
+        }
+    }
+
+    /// Commits the memory of an element at the end of a step, with the others where they settled.
+    fn remember(&mut self, i: usize, time_s: f64) {
+        let m = self.elements.len();
+        let c = &self.compliance;
+        let mut displacement = self.free_displacement[i];
+        for j in 0..m {
+            let k = i * m + j;
+            displacement -=
+                c.displacement[k] * self.smooth[j] + c.dry_displacement[k] * self.dry_force[j];
+        }
+        let to = MemberMotion {
+            displacement,
+            velocity: self.end_velocity[i],
+            time_s,
+        };
+        self.memory[i] = self.elements[i]
+            .law
+            .follow(self.memory[i], self.from[i], to)
+            .1;
+        self.from[i] = to;
     }
 
     /// Updates S and D of one element with the others held; true if they stayed where they were.
@@ -218,13 +257,17 @@ impl<'a> Plant<'a> {
             displacement -= c.dry_displacement[own] * self.dry_force[i];
             velocity -= c.dry_velocity[own] * self.dry_force[i];
         }
-        self.smooth[i] = smooth_force(old_smooth, |s| {
-            law.force(MemberMotion {
-                displacement: displacement - c.displacement[own] * s,
-                velocity: velocity - c.velocity[own] * s,
-                time_s,
-            })
-        });
+        let motion = |s: f64| MemberMotion {
+            displacement: displacement - c.displacement[own] * s,
+            velocity: velocity - c.velocity[own] * s,
+            time_s,
+        };
+        self.smooth[i] = if self.remembers[i] {
+            let (memory, from) = (self.memory[i], self.from[i]);
+            smooth_force(old_smooth, |s| law.follow(memory, from, motion(s)).0)
+        } else {
+            smooth_force(old_smooth, |s| law.force(motion(s)))
+        };
         self.end_velocity[i] = velocity - c.velocity[own] * self.smooth[i];
         let size = self.smooth[i].abs() + self.dry_force[i].abs();
         let change = (self.smooth[i] - old_smooth).abs() + (self.dry_force[i] - old_dry).abs();
