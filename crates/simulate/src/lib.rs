@@ -3,6 +3,7 @@
 //! [`Run`] brings a record into the units of a model; [`Simulator`] holds the model with its
 //! effects, ready to be marched through runs from any initial state.
 
+mod drive;
 mod error;
 mod outputs;
 mod run;

@@ -1,21 +1,27 @@
 //! The model with its effects, ready to be marched through runs.
 
+use faer::Mat;
 use simgap_effects::{Action, Placed, Sampled, SignalMap};
 use simgap_integrate::exact::{Element, ExactPropagator, Excitation, ForceLaw, MemberMotion};
-use simgap_model::{InputKind, Location, Model, Node};
+use simgap_model::{Location, Model, Node};
 
 use crate::outputs::{BaseMotion, OutputPlan, across, output_plans};
 use crate::{Run, SimulateError};
 
 /// A model with its effects.
 pub struct Simulator {
-    model: Model,
+    pub(crate) model: Model,
     elements: Vec<Element>,
-    input_maps: Vec<(usize, Box<dyn SignalMap>)>,
+    pub(crate) input_maps: Vec<(usize, Box<dyn SignalMap>)>,
     output_maps: Vec<(usize, Box<dyn SignalMap>)>,
     outputs: Vec<OutputPlan>,
-    loads: Vec<f64>,
+    pub(crate) loads: Vec<f64>,
     substeps: usize,
+    /// Degrees of freedom of the nominal model; those that effects add come after them.
+    nominal_dofs: usize,
+    /// Displacement and velocity of each added mass at the first sample beyond those with which it
+    /// would follow the others.
+    added: Vec<[f64; 2]>,
 }
 
 /// Displacement and velocity across a location, one value a sample.
@@ -53,10 +59,18 @@ impl Simulator {
         let mut laws = Vec::new();
         let (mut input_maps, mut output_maps) = (Vec::new(), Vec::new());
         let mut sampling_maps = Vec::new();
+        let mut builders = Vec::new();
+        let mut added = Vec::new();
         for placed in effects {
             match (placed.action(), &placed.at) {
                 (Action::Model(change), at) => change(&mut model, at),
+                (Action::Mode { change, start }, at) => {
+                    let before = model.dof_count();
+                    change(&mut model, at);
+                    added.extend((before..model.dof_count()).map(|_| start));
+                }
                 (Action::Force(law), at) => laws.push((at, law)),
+                (Action::Member(build), at) => builders.push((at, build)),
                 (Action::Input(map), Location::Input(channel)) => {
                     let of = model.inputs.iter().position(|i| &i.channel == channel);
                     input_maps.extend(of.map(|i| (i, map)));
@@ -72,6 +86,8 @@ impl Simulator {
                 (Action::Input(_) | Action::Output(_) | Action::Sampling(_), _) => {}
             }
         }
+        // The members as all changes of the model leave them.
+        laws.extend(builders.into_iter().map(|(at, build)| (at, build(&model, at))));
         // What happens while sampling comes after what happens before, however they are listed.
         output_maps.extend(sampling_maps);
         let mut elements = Vec::new();
@@ -103,6 +119,8 @@ impl Simulator {
             elements,
             input_maps,
             output_maps,
+            nominal_dofs: nominal.dof_count(),
+            added,
         })
     }
 
@@ -119,10 +137,17 @@ impl Simulator {
         Simulator::new(model, &effects, crate::substeps_for(model, runs)?)
     }
 
-    /// Length of the initial state: displacements, then velocities.
+    /// Length of the initial state: displacements, then velocities of the masses of the nominal
+    /// model.
     #[must_use]
     pub fn state_len(&self) -> usize {
-        2 * self.model.dof_count()
+        2 * self.nominal_dofs
+    }
+
+    /// Whether a map of an output moves in steps, so that the prediction has no derivative.
+    #[must_use]
+    pub fn is_stepped(&self) -> bool {
+        self.output_maps.iter().any(|(_, map)| map.is_stepped())
     }
 
     /// Predicts every output along a run from an initial state (displacements, then velocities;
@@ -131,6 +156,27 @@ impl Simulator {
     /// # Errors
     /// [`SimulateError::Model`] when the model cannot be propagated.
     pub fn predict(&self, run: &Run, initial: &[f64]) -> Result<Vec<Vec<f64>>, SimulateError> {
+        self.predict_through(run, initial, |_| true)
+    }
+
+    /// As [`Simulator::predict`] without the maps that move in steps: for derivatives.
+    ///
+    /// # Errors
+    /// [`SimulateError::Model`] when the model cannot be propagated.
+    pub fn predict_smooth(
+        &self,
+        run: &Run,
+        initial: &[f64],
+    ) -> Result<Vec<Vec<f64>>, SimulateError> {
+        self.predict_through(run, initial, |map| !map.is_stepped())
+    }
+
+    fn predict_through(
+        &self,
+        run: &Run,
+        initial: &[f64],
+        keep: impl Fn(&dyn SignalMap) -> bool,
+    ) -> Result<Vec<Vec<f64>>, SimulateError> {
         let mut predicted: Vec<Vec<f64>> = self
             .outputs
             .iter()
@@ -146,12 +192,13 @@ impl Simulator {
                 signal.push(plan.read(at, &acceleration, base));
             }
         })?;
-        for (output, map) in &self.output_maps {
+        for (output, map) in self.output_maps.iter().filter(|(_, map)| keep(map.as_ref())) {
             let signal = Sampled {
                 values: &predicted[*output],
                 time_step_s: run.time_step_s,
-
                 first_index: run.first_index,
+                start_s: run.start_s,
+                measured: run.measured.get(*output).and_then(Option::as_deref),
             };
             predicted[*output] = map.apply(signal);
         }
@@ -193,15 +240,19 @@ impl Simulator {
             &BaseMotion<'_>,
         ),
     ) -> Result<(), SimulateError> {
-        let n = self.model.dof_count();
         let matrices = self.model.matrices()?;
         let step = run.time_step_s / self.substeps as f64;
         let propagator = ExactPropagator::new(&matrices, step)?;
         let drive = self.drive(run)?;
         let bases = drive.base_count;
-        let value = |i: usize| initial.get(i).copied().unwrap_or(0.0);
-        let displacement: Vec<f64> = (0..n).map(value).collect();
-        let velocity: Vec<f64> = (n..2 * n).map(value).collect();
+        let known = self.nominal_dofs;
+        let part = |from: usize, k: usize| -> Vec<f64> {
+            let value = |i: usize| initial.get(i).copied().unwrap_or(0.0);
+            let values: Vec<f64> = (from..from + known).map(value).collect();
+            following(&matrices.stiffness_matrix, values, self.added.iter().map(|s| s[k]))
+        };
+        let displacement = part(0, 0);
+        let velocity = part(known, 1);
         let excitation = Excitation {
             dof_force: &drive.dof_force,
             base_displacement: &drive.base_displacement,
@@ -228,99 +279,31 @@ impl Simulator {
         );
         Ok(())
     }
-
-    /// Forces on the masses and motion of the bases, sample by sample.
-    fn drive(&self, run: &Run) -> Result<Drive, SimulateError> {
-        let n = self.model.dof_count();
-        let mut inputs: Vec<std::borrow::Cow<'_, [f64]>> = run
-            .inputs
-            .iter()
-            .map(|signal| signal.as_slice().into())
-            .collect();
-        for (input, map) in &self.input_maps {
-            let signal = Sampled {
-                values: &inputs[*input],
-                time_step_s: run.time_step_s,
-
-                first_index: run.first_index,
-            };
-            inputs[*input] = map.apply(signal).into();
-        }
-        let mut drive = Drive {
-            dof_force: Vec::with_capacity(run.len * n),
-            ..Drive::default()
-        };
-        for _ in 0..run.len {
-            drive.dof_force.extend_from_slice(&self.loads);
-        }
-        let base_inputs: Vec<usize> = (0..inputs.len())
-            .filter(|&i| self.model.inputs[i].kind == InputKind::Displacement)
-            .collect();
-        drive.base_count = base_inputs.len();
-        for (i, signal) in inputs.iter().enumerate() {
-            let Some(Node::Dof(dof)) = self.model.node(&self.model.inputs[i].at) else {
-                continue;
-            };
-            for (sample, value) in signal.iter().enumerate() {
-                drive.dof_force[sample * n + dof] += value;
-            }
-        }
-        let motion: Vec<[Vec<f64>; 3]> = base_inputs
-            .iter()
-            .map(|&i| {
-                let velocity = derivative(&inputs[i], run.time_step_s);
-                let acceleration = derivative(&velocity, run.time_step_s);
-                [inputs[i].to_vec(), velocity, acceleration]
-            })
-            .collect();
-        let interleave = |k: usize| -> Vec<f64> {
-            (0..run.len)
-                .flat_map(|s| motion.iter().map(move |base| base[k][s]))
-                .collect()
-        };
-        drive.base_displacement = interleave(0);
-        drive.base_velocity = interleave(1);
-        drive.base_acceleration = interleave(2);
-        self.couple_bases(&motion, &mut drive.dof_force, n)?;
-        Ok(drive)
-    }
-
-    /// Adds what springs and dampers to moving bases do to the masses: k b + c ḃ.
-    fn couple_bases(
-        &self,
-        motion: &[[Vec<f64>; 3]],
-        dof_force: &mut [f64],
-        n: usize,
-    ) -> Result<(), SimulateError> {
-        let springs = self
-            .model
-            .springs
-            .iter()
-            .map(|s| (&s.between, 0, s.stiffness));
-        let dampers = self
-            .model
-            .dampers
-            .iter()
-            .map(|d| (&d.between, 1, d.damping));
-        for (between, order, coefficient) in springs.chain(dampers) {
-            let pair = self.model.resolve_pair(between, || "member".into())?;
-            if let [Node::Dof(dof), Node::Base(base)] | [Node::Base(base), Node::Dof(dof)] = pair {
-                for (sample, value) in motion[base][order].iter().enumerate() {
-                    dof_force[sample * n + dof] += coefficient * value;
-                }
-            }
-        }
-        Ok(())
-    }
 }
 
-#[derive(Default)]
-struct Drive {
-    dof_force: Vec<f64>,
-    base_displacement: Vec<f64>,
-    base_velocity: Vec<f64>,
-    base_acceleration: Vec<f64>,
-    base_count: usize,
+/// Values of all masses from those of the nominal model: an added mass follows the others as the
+/// springs have it at rest, K_aa x_a = −K_ak x_k, and is off by what `added` says.
+fn following(
+    stiffness: &Mat<f64>,
+    mut values: Vec<f64>,
+    added: impl ExactSizeIterator<Item = f64>,
+) -> Vec<f64> {
+    use faer::linalg::solvers::Solve;
+    let (known, more) = (values.len(), added.len());
+    if more == 0 {
+        return values;
+    }
+    let pull = Mat::from_fn(more, 1, |i, _| {
+        let row = (0..known).map(|j| stiffness[(known + i, j)] * values[j]);
+        -row.sum::<f64>()
+    });
+    let own = Mat::from_fn(more, more, |i, j| stiffness[(known + i, known + j)]);
+    let follows = own.partial_piv_lu().solve(&pull);
+    values.extend(added.enumerate().map(|(i, off)| {
+        let value = follows[(i, 0)];
+        off + if value.is_finite() { value } else { 0.0 }
+    }));
+    values
 }
 
 fn ends(model: &Model, at: &Location) -> Result<[Node; 2], SimulateError> {
@@ -331,67 +314,4 @@ fn ends(model: &Model, at: &Location) -> Result<[Node; 2], SimulateError> {
         Location::Input(_) | Location::Channel(_) => [ground.clone(), ground],
     };
     Ok(model.resolve_pair(&pair, || at.to_string())?)
-}
-
-/// First derivative of a sampled signal by five-point central differences,
-///
-/// ```text
-/// y'_n = (y_(n−2) − 8 y_(n−1) + 8 y_(n+1) − y_(n+2)) / (12 h)
-/// ```
-///
-/// and one-sided formulas of the same order at the ends.
-fn derivative(signal: &[f64], step: f64) -> Vec<f64> {
-    let n = signal.len();
-    if n < 5 {
-        return (0..n)
-            .map(|i| {
-                let (left, right) = (i.saturating_sub(1), (i + 1).min(n - 1));
-                let span = (right - left).max(1) as f64;
-                (signal[right] - signal[left]) / (span * step)
-            })
-            .collect();
-    }
-    const EDGE: [[f64; 5]; 2] = [
-        [-25.0, 48.0, -36.0, 16.0, -3.0],
-        [-3.0, -10.0, 18.0, -6.0, 1.0],
-    ];
-    let edge = |row: usize, mirrored: bool| -> f64 {
-        let sum: f64 = (0..5)
-            .map(|j| {
-                EDGE[row][j]
-                    * if mirrored {
-                        -signal[n - 1 - j]
-                    } else {
-                        signal[j]
-                    }
-            })
-            .sum();
-        sum / (12.0 * step)
-    };
-    (0..n)
-        .map(|i| match (i, n - 1 - i) {
-            (0 | 1, _) => edge(i, false),
-            (_, 0 | 1) => edge(n - 1 - i, true),
-            _ => {
-                let s = signal;
-                (s[i - 2] - 8.0 * s[i - 1] + 8.0 * s[i + 1] - s[i + 2]) / (12.0 * step)
-            }
-        })
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::derivative;
-
-    #[test]
-    fn verify_derivative_is_exact_for_degree_four() {
-        let values: Vec<f64> = (0..9).map(|i| (f64::from(i) * 0.5).powi(4)).collect();
-        for (i, slope) in derivative(&values, 0.5).iter().enumerate() {
-            assert!(
-                (slope - 4.0 * (i as f64 * 0.5).powi(3)).abs() < 1e-10,
-                "sample {i}"
-            );
-        }
-    }
 }

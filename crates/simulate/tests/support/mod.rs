@@ -73,11 +73,7 @@ pub fn between(a: &str, b: &str) -> Location {
 pub fn placed(kind: &str, at: Location, values: &[f64]) -> Placed {
     let effect = find(kind).unwrap_or_else(|| panic!("no {kind} in the catalogue"));
     assert_eq!(effect.parameters().len(), values.len());
-    Placed {
-        effect,
-        at,
-        values: values.to_vec(),
-    }
+    Placed::new(effect, at, values.to_vec())
 }
 
 /// Predicts with effects and a number of steps between samples.

@@ -1,0 +1,166 @@
+//! What drives the plant: forces on the masses and motion of the bases, sample by sample.
+
+use simgap_effects::Sampled;
+use simgap_model::{InputKind, Node};
+
+use crate::{Run, SimulateError, Simulator};
+
+/// Forces on the masses and motion of the bases, samples × masses or bases, row-major.
+#[derive(Default)]
+pub(crate) struct Drive {
+    pub(crate) dof_force: Vec<f64>,
+    pub(crate) base_displacement: Vec<f64>,
+    pub(crate) base_velocity: Vec<f64>,
+    pub(crate) base_acceleration: Vec<f64>,
+    pub(crate) base_count: usize,
+}
+
+impl Simulator {
+    /// Forces on the masses and motion of the bases, sample by sample.
+    pub(crate) fn drive(&self, run: &Run) -> Result<Drive, SimulateError> {
+        let n = self.model.dof_count();
+        let mut inputs: Vec<std::borrow::Cow<'_, [f64]>> = run
+            .inputs
+            .iter()
+            .map(|signal| signal.as_slice().into())
+            .collect();
+        for (input, map) in &self.input_maps {
+            let signal = Sampled {
+                values: &inputs[*input],
+                time_step_s: run.time_step_s,
+                first_index: run.first_index,
+                start_s: run.start_s,
+                measured: None,
+            };
+            inputs[*input] = map.apply(signal).into();
+        }
+        let mut drive = Drive {
+            dof_force: Vec::with_capacity(run.len * n),
+            ..Drive::default()
+        };
+        for _ in 0..run.len {
+            drive.dof_force.extend_from_slice(&self.loads);
+        }
+        let base_inputs: Vec<usize> = (0..inputs.len())
+            .filter(|&i| self.model.inputs[i].kind == InputKind::Displacement)
+            .collect();
+        drive.base_count = base_inputs.len();
+        for (i, signal) in inputs.iter().enumerate() {
+            let Some(Node::Dof(dof)) = self.model.node(&self.model.inputs[i].at) else {
+                continue;
+            };
+            for (sample, value) in signal.iter().enumerate() {
+                drive.dof_force[sample * n + dof] += value;
+            }
+        }
+        let motion: Vec<[Vec<f64>; 3]> = base_inputs
+            .iter()
+            .map(|&i| {
+                let velocity = derivative(&inputs[i], run.time_step_s);
+                let acceleration = derivative(&velocity, run.time_step_s);
+                [inputs[i].to_vec(), velocity, acceleration]
+            })
+            .collect();
+        let interleave = |k: usize| -> Vec<f64> {
+            (0..run.len)
+                .flat_map(|s| motion.iter().map(move |base| base[k][s]))
+                .collect()
+        };
+        drive.base_displacement = interleave(0);
+        drive.base_velocity = interleave(1);
+        drive.base_acceleration = interleave(2);
+        self.couple_bases(&motion, &mut drive.dof_force, n)?;
+        Ok(drive)
+    }
+
+    /// Adds what springs and dampers to moving bases do to the masses: k b + c ḃ.
+    fn couple_bases(
+        &self,
+        motion: &[[Vec<f64>; 3]],
+        dof_force: &mut [f64],
+        n: usize,
+    ) -> Result<(), SimulateError> {
+        let springs = self
+            .model
+            .springs
+            .iter()
+            .map(|s| (&s.between, 0, s.stiffness));
+        let dampers = self
+            .model
+            .dampers
+            .iter()
+            .map(|d| (&d.between, 1, d.damping));
+        for (between, order, coefficient) in springs.chain(dampers) {
+            let pair = self.model.resolve_pair(between, || "member".into())?;
+            if let [Node::Dof(dof), Node::Base(base)] | [Node::Base(base), Node::Dof(dof)] = pair {
+                for (sample, value) in motion[base][order].iter().enumerate() {
+                    dof_force[sample * n + dof] += coefficient * value;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// First derivative of a sampled signal by five-point central differences,
+///
+/// ```text
+/// y'_n = (y_(n−2) − 8 y_(n−1) + 8 y_(n+1) − y_(n+2)) / (12 h)
+/// ```
+///
+/// and one-sided formulas of the same order at the ends.
+fn derivative(signal: &[f64], step: f64) -> Vec<f64> {
+    let n = signal.len();
+    if n < 5 {
+        return (0..n)
+            .map(|i| {
+                let (left, right) = (i.saturating_sub(1), (i + 1).min(n - 1));
+                let span = (right - left).max(1) as f64;
+                (signal[right] - signal[left]) / (span * step)
+            })
+            .collect();
+    }
+    const EDGE: [[f64; 5]; 2] = [
+        [-25.0, 48.0, -36.0, 16.0, -3.0],
+        [-3.0, -10.0, 18.0, -6.0, 1.0],
+    ];
+    let edge = |row: usize, mirrored: bool| -> f64 {
+        let sum: f64 = (0..5)
+            .map(|j| {
+                EDGE[row][j]
+                    * if mirrored {
+                        -signal[n - 1 - j]
+                    } else {
+                        signal[j]
+                    }
+            })
+            .sum();
+        sum / (12.0 * step)
+    };
+    (0..n)
+        .map(|i| match (i, n - 1 - i) {
+            (0 | 1, _) => edge(i, false),
+            (_, 0 | 1) => edge(n - 1 - i, true),
+            _ => {
+                let s = signal;
+                (s[i - 2] - 8.0 * s[i - 1] + 8.0 * s[i + 1] - s[i + 2]) / (12.0 * step)
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::derivative;
+
+    #[test]
+    fn verify_derivative_is_exact_for_degree_four() {
+        let values: Vec<f64> = (0..9).map(|i| (f64::from(i) * 0.5).powi(4)).collect();
+        for (i, slope) in derivative(&values, 0.5).iter().enumerate() {
+            assert!(
+                (slope - 4.0 * (i as f64 * 0.5).powi(3)).abs() < 1e-10,
+                "sample {i}"
+            );
+        }
+    }
+}
