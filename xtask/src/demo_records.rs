@@ -209,11 +209,7 @@ fn record(model: &Model, drive: impl Fn(f64) -> f64, seed: u64) -> Result<String
 
 fn placed(kind: &'static str, at: Location, value: f64) -> Result<Placed, DemoError> {
     let effect = find(kind).ok_or(DemoError::NoEffect(kind))?;
-    Ok(Placed {
-        effect,
-        at,
-        values: vec![value],
-    })
+    Ok(Placed::new(effect, at, vec![value]))
 }
 
 /// White noise of unit variance, uniformly distributed: SplitMix64.

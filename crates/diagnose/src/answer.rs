@@ -101,7 +101,7 @@ fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
     let Some(run) = train.runs.first() else {
         return vec![];
     };
-    let Ok(simulator) = train.simulator(&answer.estimate.estimate.nominal) else {
+    let Ok(simulator) = train.simulator(&answer.estimate.estimate.nominal, 0) else {
         return vec![];
     };
     let initial = &answer.estimate.estimate.initial[0];

@@ -10,6 +10,7 @@
 //! information criterion with the number of samples that are independent, \[Schwarz1978\]; the
 //! temperature T in (3) allows for what (2) does not see.
 
+use simgap_effects::Placed;
 use simgap_estimate::{Fit, Problem, Weights};
 use simgap_signal::correlation::effective_sample_count;
 
@@ -39,8 +40,17 @@ pub(crate) fn effective_samples(problem: &Problem, weights: &Weights) -> f64 {
 
 /// E of (1).
 pub(crate) fn evidence(fit: &Fit, effective_samples: f64) -> f64 {
-    let parameters: usize = fit.estimate.effects.iter().map(|p| p.values.len()).sum();
-    -fit.objective - 0.5 * parameters as f64 * effective_samples.ln()
+    -fit.objective - 0.5 * freedom(fit) * effective_samples.ln()
+}
+
+/// k of (1): parameters of the effects; one that every record has of its own counts once for each.
+pub(crate) fn freedom(fit: &Fit) -> f64 {
+    let runs = fit.estimate.initial.len();
+    let count = |placed: &Placed| {
+        let own = placed.own_places().len();
+        placed.values.len() - own + own * runs
+    };
+    fit.estimate.effects.iter().map(count).sum::<usize>() as f64
 }
 
 /// p of (3).

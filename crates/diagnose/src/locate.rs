@@ -267,7 +267,7 @@ pub(crate) fn states(
     places: &[Location],
 ) -> Result<Vec<StateShare>, EstimateError> {
     let energy = energy(check, prediction);
-    let simulator = check.simulator(&[])?;
+    let simulator = check.simulator(&[], 0)?;
     let mut list = Vec::new();
     for place in places {
         let mut path = MemberPath::default();

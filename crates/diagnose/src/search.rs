@@ -12,7 +12,9 @@ use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
 };
 
-use crate::evidence::{effective_samples, evidence};
+use simgap_model::Location;
+
+use crate::evidence::{effective_samples, evidence, freedom};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -77,14 +79,21 @@ impl<'a> Search<'a> {
         baseline: &Fit,
         withheld: &[String],
     ) -> Result<Search<'a>, EstimateError> {
-        let simulator = problem.simulator(&baseline.estimate.nominal)?;
+        let mut scales: Vec<(Location, SiteScale)> = vec![];
         let candidates = problem
             .candidates(|_| true)
             .into_iter()
             .filter(|candidate| !withheld.iter().any(|kind| kind == candidate.effect.kind()))
             .map(|candidate| {
-                let scale =
-                    problem.site_scale(&simulator, &baseline.estimate.initial, &candidate.at)?;
+                let known = scales.iter().find(|(at, _)| *at == candidate.at);
+                let scale = match known {
+                    Some((_, scale)) => *scale,
+                    None => {
+                        let scale = problem.site_scale(baseline, &candidate.at)?;
+                        scales.push((candidate.at.clone(), scale));
+                        scale
+                    }
+                };
                 Ok((candidate, scale))
             })
             .collect::<Result<Vec<_>, EstimateError>>()?;
@@ -162,11 +171,7 @@ impl<'a> Search<'a> {
                     .iter_mut()
                     .zip(&old.values)
                     .for_each(|(value, old)| *value = *old);
-                start.effects[index] = Placed {
-                    effect: candidate.effect,
-                    at: old.at.clone(),
-                    values,
-                };
+                start.effects[index] = Placed::new(candidate.effect, old.at.clone(), values);
                 start
             })
             .collect();
@@ -175,12 +180,7 @@ impl<'a> Search<'a> {
 
     /// How much more a set is penalised than another for its parameters.
     pub(crate) fn penalty(&self, larger: &Hypothesis, smaller: &Hypothesis) -> f64 {
-        let count = |set: &Hypothesis| -> f64 {
-            set.effects()
-                .iter()
-                .map(|placed| placed.values.len() as f64)
-                .sum()
-        };
+        let count = |set: &Hypothesis| freedom(&set.fit);
         0.5 * (count(larger) - count(smaller)) * self.effective_samples.ln()
     }
 
@@ -194,11 +194,7 @@ impl<'a> Search<'a> {
                 let shapes = candidate.effect.grown_from(&old.values, scale);
                 shapes.into_iter().map(|values| {
                     let mut start = base.fit.estimate.clone();
-                    start.effects[index] = Placed {
-                        effect: candidate.effect,
-                        at: old.at.clone(),
-                        values,
-                    };
+                    start.effects[index] = Placed::new(candidate.effect, old.at.clone(), values);
                     start
                 })
             })

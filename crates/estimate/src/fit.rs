@@ -13,7 +13,7 @@
 //!
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
 
-use crate::layout::Layout;
+use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, Signals, discrepancies, linearise, refresh};
 use crate::normal::{damped_step, normal_equations, variances};
 use crate::{EstimateError, Problem, Start, Weights};
@@ -58,7 +58,7 @@ const MOST_DAMPINGS: usize = 8;
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated from the start.
 pub fn fit(problem: &Problem, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
-    fit_with(problem, start, weights, |_, _, _| None)
+    fit_with(problem, start, weights, false, |_, _, _| None)
 }
 
 /// As [`fit`], with sensitivities at the start that are known already: by layout, run and place.
@@ -66,9 +66,14 @@ pub(crate) fn fit_with(
     problem: &Problem,
     start: &Start,
     weights: &Weights,
+    shared_held: bool,
     known: impl Fn(&Layout, usize, usize) -> Option<Signals>,
 ) -> Result<Fit, EstimateError> {
-    let layout = Layout::new(start, &state_scale(problem), weights.nominal_prior);
+    let freedom = Freedom {
+        nominal_prior: weights.nominal_prior,
+        shared_held,
+    };
+    let layout = Layout::new(start, &state_scale(problem), freedom);
     let merit = Merit::new(problem, weights);
     let mut theta = layout.pack(start);
     layout.make_physical(&mut theta);
@@ -116,13 +121,8 @@ pub(crate) fn fit_with(
             columns: vec![],
         };
         let mut kept = at.columns;
-        let from = if weights.keep_nuisance {
-            layout.effect_len()
-        } else {
-            usize::MAX
-        };
         at = refresh(problem, &layout, &theta, here, |run, place| {
-            (place >= from).then(|| std::mem::take(&mut kept[run][place]))
+            (weights.keep_nuisance && layout.is_nuisance(place)).then(|| std::mem::take(&mut kept[run][place]))
         })?;
         if gain >= weights.converged {
             exact = !weights.keep_nuisance;
@@ -201,24 +201,27 @@ fn finish(layout: &Layout, merit: &Merit, theta: &[f64], at: Linearised, iterati
     let all: Vec<usize> = (0..layout.len()).collect();
     let spread = variances(&hessian, &all);
     let estimate = layout.unpack(theta);
-    let mut entry = 0;
-    let intervals = estimate
-        .effects
-        .iter()
-        .map(|placed| {
-            placed
-                .values
-                .iter()
-                .map(|&value| {
-                    let half = NORMAL_95 * spread[entry].sqrt() * layout.scale[entry];
-                    let ci95 = [
-                        (value - half).max(layout.lower[entry]),
-                        (value + half).min(layout.upper[entry]),
-                    ];
-                    entry += 1;
-                    Interval { value, ci95 }
-                })
-                .collect()
+    let interval = |e: usize, i: usize, value: f64| {
+        let Some(entry) = layout.entry(e, i) else {
+            return Interval {
+                value,
+                ci95: [f64::NEG_INFINITY, f64::INFINITY],
+            };
+        };
+        let half = NORMAL_95 * spread[entry].sqrt() * layout.scale[entry];
+        Interval {
+            value,
+            ci95: [
+                (value - half).max(layout.lower[entry]),
+                (value + half).min(layout.upper[entry]),
+            ],
+        }
+    };
+    let effects = estimate.effects.iter().enumerate();
+    let intervals = effects
+        .map(|(e, placed)| {
+            let values = placed.values.iter().enumerate();
+            values.map(|(i, &value)| interval(e, i, value)).collect()
         })
         .collect();
     Fit {
@@ -229,25 +232,6 @@ fn finish(layout: &Layout, merit: &Merit, theta: &[f64], at: Linearised, iterati
         discrepancy: at.discrepancy,
         iterations,
     }
-}
-
-/// Fits only the initial states, with everything else as given.
-///
-/// # Errors
-/// [`EstimateError`] when the model cannot be propagated.
-pub fn fit_initial_states(
-    problem: &Problem,
-    effects: &[simgap_effects::Placed],
-    weights: &Weights,
-) -> Result<Fit, EstimateError> {
-    let mut fixed = problem.with_runs(problem.runs.clone());
-    fixed.given.extend_from_slice(effects);
-    let start = Start {
-        effects: vec![],
-        nominal: vec![],
-        initial: problem.initial_guess(),
-    };
-    fit(&fixed, &start, weights)
 }
 
 /// The objective (1) and the weights (3).

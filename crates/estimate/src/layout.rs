@@ -35,13 +35,27 @@ pub struct Start {
     pub initial: Vec<Vec<f64>>,
 }
 
+/// What a fit may do with the start.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Freedom {
+    /// Standard deviation of the prior on nominal parameters.
+    pub(crate) nominal_prior: f64,
+    /// Whether values that all records share stay as they are.
+    pub(crate) shared_held: bool,
+}
+
 /// Factor within which a fit moves a parameter that only shapes an effect.
 const SHAPE_REACH: f64 = 10.0;
 
-/// The vector θ: values of the effects, then of the nominal parameters, then the initial states.
+/// The vector θ: values of the effects that all records share, then the nominal parameters; then,
+/// run by run, the effects' values of its own and its initial state.
 pub(crate) struct Layout {
     effects: Vec<Placed>,
     nominal: Vec<Placed>,
+    /// Effect and place of each shared value of the effects.
+    shared_values: Vec<(usize, usize)>,
+    /// Effect and place of each value that a run has of its own.
+    own_values: Vec<(usize, usize)>,
     state_len: usize,
     run_count: usize,
     /// Typical size of each entry of θ.
@@ -54,10 +68,21 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    pub(crate) fn new(start: &Start, state_scale: &[f64], prior: f64) -> Layout {
+    pub(crate) fn new(start: &Start, state_scale: &[f64], freedom: Freedom) -> Layout {
+        let places = |own: bool| -> Vec<(usize, usize)> {
+            let effects = start.effects.iter().enumerate();
+            effects
+                .flat_map(|(e, placed)| {
+                    let parameters = placed.effect.parameters().iter().enumerate();
+                    parameters.filter_map(move |(i, p)| (p.per_record == own).then_some((e, i)))
+                })
+                .collect()
+        };
         let mut layout = Layout {
             effects: start.effects.clone(),
             nominal: start.nominal.clone(),
+            shared_values: places(false),
+            own_values: places(true),
             state_len: state_scale.len(),
             run_count: start.initial.len(),
             scale: vec![],
@@ -66,46 +91,79 @@ impl Layout {
             lower: vec![],
             upper: vec![],
         };
-        for (placed, std) in start
+        let physical: Vec<Vec<f64>> = start
             .effects
             .iter()
-            .map(|p| (p, f64::INFINITY))
-            .chain(start.nominal.iter().map(|p| (p, prior)))
-        {
-            let mut values = placed.values.clone();
-            placed.effect.make_physical(&mut values);
-            for (parameter, &value) in placed.effect.parameters().iter().zip(&values) {
-                layout.push_parameter(parameter, value, std);
+            .map(|placed| {
+                let mut values = placed.values.clone();
+                placed.effect.make_physical(&mut values);
+                values
+            })
+            .collect();
+        for &(e, i) in &layout.shared_values.clone() {
+            let value = physical[e][i];
+            let parameter = &start.effects[e].effect.parameters()[i];
+            layout.push_parameter(parameter, value, f64::INFINITY);
+            if freedom.shared_held {
+                layout.hold_last(value);
             }
         }
-        for _ in 0..layout.run_count {
+        for placed in &start.nominal {
+            for (parameter, &value) in placed.effect.parameters().iter().zip(&placed.values) {
+                layout.push_parameter(parameter, value.max(parameter.lower), freedom.nominal_prior);
+            }
+        }
+        for run in 0..layout.run_count {
+            for &(e, i) in &layout.own_values.clone() {
+                let value = start.effects[e].in_record(run).values[i];
+                let parameter = &start.effects[e].effect.parameters()[i];
+                layout.push_parameter(parameter, value, f64::INFINITY);
+            }
             for &scale in state_scale {
-                layout.scale.push(scale);
-                layout.prior_std.push(f64::INFINITY);
-                layout.prior_mean.push(0.0);
-                layout.lower.push(f64::NEG_INFINITY);
-                layout.upper.push(f64::INFINITY);
+                layout.push(scale, [f64::NEG_INFINITY, f64::INFINITY]);
             }
         }
         layout
     }
 
+    fn push(&mut self, scale: f64, [lower, upper]: [f64; 2]) {
+        self.scale.push(scale);
+        self.prior_std.push(f64::INFINITY);
+        self.prior_mean.push(0.0);
+        self.lower.push(lower);
+        self.upper.push(upper);
+    }
+
     fn push_parameter(&mut self, parameter: &Parameter, value: f64, std: f64) {
-        let neutral = parameter.neutral.unwrap_or(0.0);
+        // A limit at infinity is no point to measure a distance from.
+        let neutral = parameter.neutral.filter(|n| n.is_finite()).unwrap_or(0.0);
         // Near the neutral value the distance to it is no scale any more.
         let size = (value - neutral).abs().max(0.02 * neutral.abs());
-        self.scale.push(if size > 0.0 { size } else { 1.0 });
-        self.prior_std.push(std);
-        self.prior_mean.push(neutral);
         // A fit looks for a shape around the one it starts from; others have starts of their own.
-        let shape = parameter.neutral.is_none() && value > 0.0;
+        let shape = parameter.neutral.is_none() && value > 0.0 && !parameter.per_record;
         let (least, most) = if shape {
             (value / SHAPE_REACH, value * SHAPE_REACH)
         } else {
             (f64::NEG_INFINITY, f64::INFINITY)
         };
-        self.lower.push(parameter.lower.max(least));
-        self.upper.push(parameter.upper.min(most));
+        self.push(
+            if size > 0.0 && size.is_finite() { size } else { 1.0 },
+            [parameter.lower.max(least), parameter.upper.min(most)],
+        );
+        if let (Some(last), Some(mean)) = (self.prior_std.last_mut(), self.prior_mean.last_mut()) {
+            (*last, *mean) = (std, neutral);
+        }
+    }
+
+    fn hold_last(&mut self, value: f64) {
+        if let (Some(lower), Some(upper)) = (self.lower.last_mut(), self.upper.last_mut()) {
+            (*lower, *upper) = (value, value);
+        }
+    }
+
+    /// Whether an entry cannot move.
+    pub(crate) fn is_held(&self, entry: usize) -> bool {
+        self.lower[entry] == self.upper[entry]
     }
 
     /// Number of entries that every run depends on.
@@ -113,48 +171,95 @@ impl Layout {
         self.effect_len() + self.nominal.iter().map(|p| p.values.len()).sum::<usize>()
     }
 
-    /// Number of entries that belong to the effects.
+    /// Number of shared entries that belong to the effects.
     pub(crate) fn effect_len(&self) -> usize {
-        self.effects.iter().map(|p| p.values.len()).sum()
+        self.shared_values.len()
+    }
+
+    /// Number of entries of a run that belong to the effects.
+    pub(crate) fn own_len(&self) -> usize {
+        self.own_values.len()
     }
 
     pub(crate) fn len(&self) -> usize {
         self.scale.len()
     }
 
-    /// First entry of the initial state of a run.
-    pub(crate) fn state_offset(&self, run: usize) -> usize {
-        self.shared_len() + run * self.state_len
+    /// First entry that belongs to a run alone.
+    fn run_offset(&self, run: usize) -> usize {
+        self.shared_len() + run * (self.own_len() + self.state_len)
     }
 
-    /// Entries a run depends on: the shared ones, then its own initial state.
+    /// Entries a run depends on: the shared ones, then its own.
     pub(crate) fn entries(&self, run: usize) -> impl Iterator<Item = usize> + use<> {
-        let own = self.state_offset(run)..self.state_offset(run) + self.state_len;
+        let own = self.run_offset(run)..self.run_offset(run + 1);
         (0..self.shared_len()).chain(own)
+    }
+
+    /// Whether a place in the list of [`Layout::entries`] is a nominal parameter or belongs to the
+    /// initial state.
+    pub(crate) fn is_nuisance(&self, place: usize) -> bool {
+        (self.effect_len()..self.shared_len()).contains(&place)
+            || place >= self.shared_len() + self.own_len()
     }
 
     /// For each shared entry, the effect or nominal parameter it belongs to and which of its
     /// values it is.
     pub(crate) fn shared(&self) -> impl Iterator<Item = (&Placed, usize)> {
-        let placed = self.effects.iter().chain(&self.nominal);
-        placed.flat_map(|p| (0..p.values.len()).map(move |i| (p, i)))
+        let effects = self.shared_values.iter();
+        let nominal = self.nominal.iter();
+        effects
+            .map(|&(e, i)| (&self.effects[e], i))
+            .chain(nominal.flat_map(|p| (0..p.values.len()).map(move |i| (p, i))))
+    }
+
+    /// The entry of a value of an effect, of a value of a record that of the first.
+    pub(crate) fn entry(&self, effect: usize, place: usize) -> Option<usize> {
+        let at = |list: &[(usize, usize)]| list.iter().position(|&key| key == (effect, place));
+        at(&self.shared_values)
+            .or_else(|| at(&self.own_values).map(|own| self.run_offset(0) + own))
     }
 
     pub(crate) fn pack(&self, start: &Start) -> Vec<f64> {
-        let placed = start.effects.iter().chain(&start.nominal);
-        let mut theta: Vec<f64> = placed.flat_map(|p| p.values.iter().copied()).collect();
-        theta.extend(start.initial.iter().flatten());
+        let effects = &start.effects;
+        let shared = self.shared_values.iter();
+        let mut theta: Vec<f64> = shared.map(|&(e, i)| effects[e].values[i]).collect();
+        theta.extend(start.nominal.iter().flat_map(|p| p.values.iter().copied()));
+        for (run, initial) in start.initial.iter().enumerate() {
+            let own = self.own_values.iter();
+            theta.extend(own.map(|&(e, i)| effects[e].in_record(run).values[i]));
+            theta.extend(initial);
+        }
         theta
     }
 
     pub(crate) fn unpack(&self, theta: &[f64]) -> Start {
-        let mut next = theta.iter().copied();
-        let mut fill = |placed: &Placed| Placed {
+        let mut effects = self.effects.clone();
+        for (&(e, i), &value) in self.shared_values.iter().zip(theta) {
+            effects[e].values[i] = value;
+        }
+        for placed in &mut effects {
+            placed.of_record = if placed.own_places().is_empty() {
+                vec![]
+            } else {
+                vec![vec![]; self.run_count]
+            };
+        }
+        for run in 0..self.run_count {
+            let own = &theta[self.run_offset(run)..];
+            for (&(e, i), &value) in self.own_values.iter().zip(own) {
+                effects[e].of_record[run].push(value);
+                if run == 0 {
+                    effects[e].values[i] = value;
+                }
+            }
+        }
+        let mut next = theta[self.effect_len()..].iter().copied();
+        let nominal = self.nominal.iter().map(|placed| Placed {
             values: placed.values.iter().filter_map(|_| next.next()).collect(),
             ..placed.clone()
-        };
-        let effects: Vec<Placed> = self.effects.iter().map(&mut fill).collect();
-        let nominal: Vec<Placed> = self.nominal.iter().map(&mut fill).collect();
+        });
+        let nominal = nominal.collect();
         let initial = (0..self.run_count)
             .map(|run| self.state(theta, run).to_vec())
             .collect();
@@ -166,24 +271,31 @@ impl Layout {
     }
 
     pub(crate) fn state<'a>(&self, theta: &'a [f64], run: usize) -> &'a [f64] {
-        let offset = self.state_offset(run);
+        let offset = self.run_offset(run) + self.own_len();
         &theta[offset..offset + self.state_len]
     }
 
     /// Moves the values of the effects and nominal parameters to the nearest physical ones.
     pub(crate) fn make_physical(&self, theta: &mut [f64]) {
-        let mut rest = &mut *theta;
-        for placed in self.effects.iter().chain(&self.nominal) {
-            let (own, next) = rest.split_at_mut(placed.values.len());
-            placed.effect.make_physical(own);
-            rest = next;
+        let start = self.unpack(theta);
+        for (e, mut placed) in start.effects.into_iter().enumerate() {
+            placed.effect.make_physical(&mut placed.values);
+            for (entry, key) in self.shared_values.iter().enumerate() {
+                if key.0 == e {
+                    theta[entry] = placed.values[key.1];
+                }
+            }
         }
-        let shared = self.shared_len();
-        for (value, (lower, upper)) in theta
-            .iter_mut()
-            .zip(self.lower.iter().zip(&self.upper))
-            .take(shared)
-        {
+        let mut entry = self.effect_len();
+        for mut placed in start.nominal {
+            placed.effect.make_physical(&mut placed.values);
+            for value in placed.values {
+                theta[entry] = value;
+                entry += 1;
+            }
+        }
+        let bounds = self.lower.iter().zip(&self.upper);
+        for (value, (lower, upper)) in theta.iter_mut().zip(bounds) {
             *value = value.clamp(*lower, *upper);
         }
     }

@@ -5,13 +5,16 @@
 //! effects, with the nominal parameters held near their values and the initial states free.
 
 mod fit;
+mod initial;
 mod layout;
 mod linearise;
 mod normal;
 mod problem;
 mod score;
+mod site;
 
-pub use fit::{Fit, Interval, fit, fit_initial_states};
+pub use fit::{Fit, Interval, fit};
+pub use initial::fit_initial_states;
 pub use layout::{Candidate, Start};
 pub use problem::{Problem, Weights};
 pub use score::{Base, Score, linearise_at, score};

@@ -29,8 +29,25 @@ pub(crate) fn predict(
     let start = layout.unpack(theta);
     let effects: Vec<_> = start.effects.into_iter().chain(start.nominal).collect();
     problem
-        .simulator(&effects)?
+        .simulator(&effects, run)?
         .predict(&problem.runs[run], layout.state(theta, run))
+}
+
+/// As [`predict`], without what moves in steps where there is such; `None` where there is not.
+fn predict_smooth(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+    run: usize,
+) -> Result<Option<Signals>, EstimateError> {
+    let start = layout.unpack(theta);
+    let effects: Vec<_> = start.effects.into_iter().chain(start.nominal).collect();
+    let simulator = problem.simulator(&effects, run)?;
+    if !simulator.is_stepped() {
+        return Ok(None);
+    }
+    let smooth = simulator.predict_smooth(&problem.runs[run], layout.state(theta, run))?;
+    Ok(Some(subtract(&problem.runs[run].measured, smooth)))
 }
 
 /// Measured minus predicted, for every run and channel.
@@ -69,14 +86,23 @@ fn column(
     entry: usize,
     discrepancy: &Signals,
 ) -> Result<Signals, EstimateError> {
+    if layout.is_held(entry) {
+        let zero = |signal: &Vec<f64>| vec![0.0; signal.len()];
+        return Ok(discrepancy.iter().map(zero).collect());
+    }
     let mut moved = theta.to_vec();
     let mut step = DIFFERENCE * layout.scale[entry];
     if theta[entry] + step > layout.upper[entry] {
         step = -step;
     }
     moved[entry] += step;
-    let predicted = predict(problem, layout, &moved, run)?;
-    let mut change = subtract(&problem.runs[run].measured, predicted);
+    let mut change = match predict_smooth(problem, layout, &moved, run)? {
+        Some(change) => change,
+        None => {
+            let predicted = predict(problem, layout, &moved, run)?;
+            subtract(&problem.runs[run].measured, predicted)
+        }
+    };
     let factor = layout.scale[entry] / step;
     for (signal, base) in change.iter_mut().zip(discrepancy) {
         signal
@@ -115,6 +141,8 @@ pub(crate) fn refresh(
     let mut columns = Vec::with_capacity(problem.runs.len());
     for (run, own) in discrepancy.iter().enumerate() {
         let mut list = Vec::new();
+        let smooth = predict_smooth(problem, layout, theta, run)?;
+        let own = smooth.as_ref().unwrap_or(own);
         for (place, entry) in layout.entries(run).enumerate() {
             list.push(match stale(run, place) {
                 Some(column) => column,

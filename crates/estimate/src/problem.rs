@@ -1,11 +1,10 @@
 //! What is estimated from.
 
 use simgap_effects::{Family, Placed, catalogue, sites};
-use simgap_model::{Location, Model, OutputKind};
-use simgap_simulate::{MemberPath, Run, Simulator, substeps_for};
+use simgap_model::{Model, OutputKind};
+use simgap_simulate::{Run, Simulator, substeps_for};
 
 use crate::{Candidate, EstimateError};
-use simgap_effects::SiteScale;
 
 /// A nominal model and the runs it is compared with.
 pub struct Problem {
@@ -84,12 +83,13 @@ impl Problem {
         }
     }
 
-    /// The nominal model with effects on top of those it has.
+    /// The nominal model with effects on top of those it has, as they are in one of the runs.
     ///
     /// # Errors
     /// [`EstimateError`] when a place is not in the model.
-    pub fn simulator(&self, effects: &[Placed]) -> Result<Simulator, EstimateError> {
-        let all: Vec<Placed> = self.given.iter().chain(effects).cloned().collect();
+    pub fn simulator(&self, effects: &[Placed], run: usize) -> Result<Simulator, EstimateError> {
+        let all = self.given.iter().chain(effects);
+        let all: Vec<Placed> = all.map(|placed| placed.in_record(run)).collect();
         Simulator::new(&self.model, &all, self.substeps)
     }
 
@@ -159,82 +159,6 @@ impl Problem {
                 state
             })
             .collect()
-    }
-
-    /// Typical sizes at a place, from the motion that a simulation predicts there.
-    ///
-    /// # Errors
-    /// [`EstimateError`] when the model cannot be propagated.
-    pub fn site_scale(
-        &self,
-        simulator: &Simulator,
-        initial: &[Vec<f64>],
-        at: &Location,
-    ) -> Result<SiteScale, EstimateError> {
-        let mut path = MemberPath::default();
-        for (run, state) in self.runs.iter().zip(initial) {
-            let one = simulator.path(run, state, at)?;
-            path.displacement.extend(one.displacement);
-            path.velocity.extend(one.velocity);
-            path.acceleration.extend(one.acceleration);
-        }
-        let inertia = self.force_scale(at, rms_about_mean(|| path.acceleration.iter()));
-        let signal = match at {
-            Location::Channel(name) => {
-                let index = self.model.outputs.iter().position(|o| &o.channel == name);
-                index.map_or(0.0, |i| self.output_std()[i])
-            }
-            Location::Input(name) => {
-                let index = self.model.inputs.iter().position(|i| &i.channel == name);
-                index.map_or(0.0, |i| {
-                    rms_about_mean(|| self.runs.iter().flat_map(move |run| run.inputs[i].iter()))
-                })
-            }
-            Location::Between(_) | Location::Mass(_) => 0.0,
-        };
-        // A site that does not move in the nominal model still gets finite starting values.
-        let positive = |value: f64| {
-            if value > 0.0 && value.is_finite() {
-                value
-            } else {
-                1.0
-            }
-        };
-        let longest = self.runs.iter().map(Run::duration_s).fold(0.0, f64::max);
-        Ok(SiteScale {
-            displacement_m: positive(rms_about_mean(|| path.displacement.iter())),
-            velocity_m_per_s: positive(rms_about_mean(|| path.velocity.iter())),
-            force_n: positive(inertia),
-            signal: positive(signal),
-            time_step_s: self.runs.first().map_or(1.0, |run| run.time_step_s),
-            duration_s: positive(longest),
-        })
-    }
-
-    /// Typical force around a place, N: inertia of the masses it joins, else the measured forces.
-    fn force_scale(&self, at: &Location, acceleration: f64) -> f64 {
-        let names: Vec<&String> = match at {
-            Location::Between(pair) => pair.iter().collect(),
-            Location::Mass(mass) => vec![mass],
-            Location::Input(_) | Location::Channel(_) => vec![],
-        };
-        let masses = self
-            .model
-            .masses
-            .iter()
-            .filter(|mass| names.contains(&&mass.name));
-        let inertia = masses.map(|mass| mass.value).fold(0.0, f64::max) * acceleration;
-        if inertia > 0.0 {
-            return inertia;
-        }
-        let forces = self
-            .model
-            .outputs
-            .iter()
-            .zip(self.output_std())
-            .filter(|(output, _)| output.kind == OutputKind::Force)
-            .map(|(_, std)| std);
-        forces.fold(0.0, f64::max)
     }
 }
 

@@ -10,12 +10,14 @@
 //!
 //! (1) is the score test of the effect, â the size the data ask for and the start of its fit.
 
+use std::f64::consts::FRAC_PI_2;
+
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
-use simgap_effects::{Effect, Placed, SiteScale};
+use simgap_effects::{Clock, Effect, Placed, SiteScale};
 
 use crate::fit::{Merit, fit_with, state_scale};
-use crate::layout::Layout;
+use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, Signals, linearise};
 use crate::normal::{inner, normal_equations};
 use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
@@ -57,7 +59,11 @@ pub fn linearise_at<'a>(
     fit: &'a Fit,
     weights: &Weights,
 ) -> Result<Base<'a>, EstimateError> {
-    let layout = Layout::new(&fit.estimate, &state_scale(problem), weights.nominal_prior);
+    let freedom = Freedom {
+        nominal_prior: weights.nominal_prior,
+        shared_held: false,
+    };
+    let layout = Layout::new(&fit.estimate, &state_scale(problem), freedom);
     let theta = layout.pack(&fit.estimate);
     let at = linearise(problem, &layout, &theta)?;
     let merit = Merit::new(problem, weights);
@@ -106,6 +112,8 @@ fn sized(effect: &dyn Effect, shape: &[f64], only: Option<usize>, share: f64) ->
     let sized = effect.parameters().iter().zip(shape).enumerate();
     sized
         .map(|(i, (parameter, &value))| match parameter.neutral {
+            // A limit of a shape stays where it is.
+            Some(neutral) if !neutral.is_finite() || parameter.per_record => value,
             Some(neutral) if only.is_none_or(|k| k == i) => neutral + share * (value - neutral),
             Some(neutral) => neutral,
             None => value,
@@ -120,15 +128,16 @@ impl Base<'_> {
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated from the start.
     pub fn fit(&self, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
-        fit_with(self.problem, start, weights, |layout, run, place| {
+        fit_with(self.problem, start, weights, false, |layout, run, place| {
+            if !layout.is_nuisance(place) {
+                return None;
+            }
             let shared = layout.shared_len();
             if place >= shared {
                 // Initial states keep their order and scale.
-                let own = self.layout.shared_len() + place - shared;
+                let state = place - shared - layout.own_len();
+                let own = self.layout.shared_len() + self.layout.own_len() + state;
                 return self.at.columns[run].get(own).cloned();
-            }
-            if place < layout.effect_len() {
-                return None;
             }
             let (placed, value) = layout.shared().nth(place)?;
             let twin = self.layout.shared().position(|(p, v)| {
@@ -146,14 +155,22 @@ impl Base<'_> {
         candidate: &Candidate,
         shape: &[f64],
     ) -> Result<Option<Score>, EstimateError> {
+        if let Some(clock) = candidate.effect.clock() {
+            return self.score_clock(candidate, shape, clock);
+        }
         let parameters = candidate.effect.parameters();
+        // What a record has of its own is left to the fit.
         let sizes: Vec<usize> = (0..parameters.len())
-            .filter(|&i| parameters[i].neutral.is_some())
+            .filter(|&i| !parameters[i].per_record)
+            .filter(|&i| parameters[i].neutral.is_some_and(f64::is_finite))
             .collect();
+        if sizes.is_empty() {
+            return self.score_as_it_stands(candidate, shape);
+        }
         let mut columns = Vec::new();
         for &k in &sizes {
             let values = sized(candidate.effect, shape, Some(k), TRIAL);
-            columns.push(self.columns(candidate, values)?);
+            columns.push(self.columns(candidate, values, TRIAL)?);
         }
         let Some((amplitude, energy)) = self.amplitudes(&columns) else {
             return Ok(None);
@@ -172,14 +189,82 @@ impl Base<'_> {
             return Ok(None);
         }
         candidate.effect.make_physical(&mut values);
+        Ok(Some(self.scored(candidate, values, energy)))
+    }
+
+    fn scored(&self, candidate: &Candidate, values: Vec<f64>, energy: f64) -> Score {
         let share = (energy / self.energy).clamp(0.0, 1.0 - 1e-9);
-        let gain = -0.5 * self.independent_samples * (1.0 - share).ln();
-        let start = Placed {
-            effect: candidate.effect,
-            at: candidate.at.clone(),
-            values,
+        Score {
+            gain: -0.5 * self.independent_samples * (1.0 - share).ln(),
+            start: Placed::new(candidate.effect, candidate.at.clone(), values),
+        }
+    }
+
+    /// An effect without a size to grow from (a limit): scored by the whole of what it does.
+    fn score_as_it_stands(
+        &self,
+        candidate: &Candidate,
+        shape: &[f64],
+    ) -> Result<Option<Score>, EstimateError> {
+        let column = self.columns(candidate, shape.to_vec(), 1.0)?;
+        let energy = match self.amplitudes(&[column]) {
+            Some((amplitude, energy)) if amplitude[0] > 0.0 => energy,
+            _ => return Ok(None),
         };
-        Ok(Some(Score { gain, start }))
+        Ok(Some(self.scored(candidate, shape.to_vec(), energy)))
+    }
+
+    /// An effect with a clock: a sine and a cosine of its own for each run.
+    fn score_clock(
+        &self,
+        candidate: &Candidate,
+        shape: &[f64],
+        clock: Clock,
+    ) -> Result<Option<Score>, EstimateError> {
+        let runs = self.problem.runs.len();
+        let mut columns = Vec::new();
+        for phase in [0.0, FRAC_PI_2] {
+            let mut values = shape.to_vec();
+            values[clock.amplitude] *= TRIAL;
+            values[clock.phase] = phase;
+            let together = self.columns(candidate, values, TRIAL)?;
+            for run in 0..runs {
+                let alone = together.iter().enumerate().map(|(r, signals)| {
+                    let kept = |signal: &Vec<f64>| {
+                        if r == run {
+                            signal.clone()
+                        } else {
+                            vec![0.0; signal.len()]
+                        }
+                    };
+                    signals.iter().map(kept).collect()
+                });
+                columns.push(alone.collect());
+            }
+        }
+        let Some((parts, energy)) = self.amplitudes(&columns) else {
+            return Ok(None);
+        };
+        let size = |run: usize| parts[run].hypot(parts[runs + run]);
+        let mean = ((0..runs).map(|r| size(r).powi(2)).sum::<f64>() / runs as f64).sqrt();
+        let mut values = shape.to_vec();
+        values[clock.amplitude] *= mean;
+        if !values.iter().all(|value| value.is_finite()) || mean == 0.0 {
+            return Ok(None);
+        }
+        let mut score = self.scored(candidate, values, energy);
+        let own = score.start.own_places();
+        score.start.of_record = (0..runs)
+            .map(|run| {
+                let phase = parts[runs + run].atan2(parts[run]);
+                let value = |place: &usize| match *place {
+                    place if place == clock.phase => phase,
+                    place => shape[place],
+                };
+                own.iter().map(value).collect()
+            })
+            .collect();
+        Ok(Some(score))
     }
 
     /// Change of the prediction of every run by the trial effect, divided by its share.
@@ -187,13 +272,10 @@ impl Base<'_> {
         &self,
         candidate: &Candidate,
         values: Vec<f64>,
+        share: f64,
     ) -> Result<Vec<Signals>, EstimateError> {
         let estimate = &self.fit.estimate;
-        let trial = Placed {
-            effect: candidate.effect,
-            at: candidate.at.clone(),
-            values,
-        };
+        let trial = Placed::new(candidate.effect, candidate.at.clone(), values);
         let effects: Vec<Placed> = estimate
             .effects
             .iter()
@@ -201,16 +283,16 @@ impl Base<'_> {
             .chain([&trial])
             .cloned()
             .collect();
-        let simulator = self.problem.simulator(&effects)?;
         let mut all = Vec::new();
         for (run, signals) in self.problem.runs.iter().enumerate() {
+            let simulator = self.problem.simulator(&effects, run)?;
             let mut predicted = simulator.predict(signals, &estimate.initial[run])?;
             for (c, signal) in predicted.iter_mut().enumerate() {
                 let before = &self.at.discrepancy[run][c];
                 match &signals.measured[c] {
                     Some(measured) => {
                         for (i, p) in signal.iter_mut().enumerate() {
-                            *p = (*p - (measured[i] - before[i])) / TRIAL;
+                            *p = (*p - (measured[i] - before[i])) / share;
                         }
                     }
                     None => signal.fill(0.0),

@@ -106,11 +106,7 @@ pub fn between(a: &str, b: &str) -> Location {
 }
 
 pub fn placed(kind: &str, at: Location, values: &[f64]) -> Placed {
-    Placed {
-        effect: find(kind).unwrap(),
-        at,
-        values: values.to_vec(),
-    }
+    Placed::new(find(kind).unwrap(), at, values.to_vec())
 }
 
 pub fn candidate(kind: &str, at: Location) -> Candidate {
@@ -130,12 +126,10 @@ pub fn start(effects: Vec<Placed>, nominal: Vec<Placed>, initial: &[f64]) -> Sta
 
 pub fn scale() -> SiteScale {
     SiteScale {
-        displacement_m: 0.01,
-        velocity_m_per_s: 0.2,
-        force_n: 10.0,
         signal: 0.01,
         time_step_s: 0.01,
         duration_s: 4.0,
+        ..SiteScale::plain(0.01, 0.2, 10.0)
     }
 }
 

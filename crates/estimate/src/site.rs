@@ -1,0 +1,225 @@
+//! Typical sizes at a place, from which the effects take their starting values.
+
+use simgap_effects::{LINES, SiteScale};
+use simgap_model::{Location, Model, OutputKind, same_pair};
+use simgap_signal::peaks::{PeakOptions, find_peaks};
+use simgap_signal::spectrum::spectrum;
+use simgap_signal::{Trend, Window};
+use simgap_simulate::{MemberPath, Run};
+
+use crate::problem::rms_about_mean;
+use crate::{EstimateError, Fit, Problem};
+
+/// More levels than this are how numbers are printed, not what a converter does.
+const MOST_LEVELS: usize = 4096;
+/// A level may be this share of a step off, and this share of the values off the lattice.
+const OFF_LATTICE: f64 = 0.05;
+const OFF_SHARE: f64 = 0.02;
+
+impl Problem {
+    /// Typical sizes at a place, from the motion that a fit predicts there and what it leaves.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated.
+    pub fn site_scale(&self, fit: &Fit, at: &Location) -> Result<SiteScale, EstimateError> {
+        let mut path = MemberPath::default();
+        for (r, run) in self.runs.iter().enumerate() {
+            let simulator = self.simulator(&fit.estimate.nominal, r)?;
+            let one = simulator.path(run, &fit.estimate.initial[r], at)?;
+            path.displacement.extend(one.displacement);
+            path.velocity.extend(one.velocity);
+            path.acceleration.extend(one.acceleration);
+        }
+        let channel = match at {
+            Location::Channel(name) => self.model.outputs.iter().position(|o| &o.channel == name),
+            _ => None,
+        };
+        let inertia = self.force_scale(at, rms_about_mean(|| path.acceleration.iter()));
+        let signal = match (at, channel) {
+            (_, Some(i)) => self.output_std()[i],
+            (Location::Input(name), None) => {
+                let index = self.model.inputs.iter().position(|i| &i.channel == name);
+                index.map_or(0.0, |i| {
+                    rms_about_mean(|| self.runs.iter().flat_map(move |run| run.inputs[i].iter()))
+                })
+            }
+            _ => 0.0,
+        };
+        let displacement_m = positive(rms_about_mean(|| path.displacement.iter()));
+        let force_n = positive(inertia);
+        let longest = self.runs.iter().map(Run::duration_s).fold(0.0, f64::max);
+        let stiffness = stiffness_at(&self.model, at);
+        let first = self.runs.first();
+        let step = first.map_or(1.0, |run| run.time_step_s);
+        let measured = |i: usize| self.runs.iter().filter_map(move |r| r.measured[i].as_deref());
+        let moved = path.displacement.get(..first.map_or(0, |run| run.len));
+        Ok(SiteScale {
+            signal: positive(signal),
+            time_step_s: step,
+            duration_s: positive(longest),
+            displacement_range_m: range(path.displacement.iter().copied()),
+            signal_range: channel.map_or([-1.0, 1.0], |i| range(measured(i).flatten().copied())),
+            signal_step: channel
+                .and_then(|i| lattice_step(measured(i).flatten().copied().collect()))
+                .unwrap_or(0.0),
+            stiffness_n_per_m: if stiffness > 0.0 {
+                stiffness
+            } else {
+                force_n / displacement_m
+            },
+            mass_kg: mass_at(&self.model, at).unwrap_or(1.0),
+            lines_hz: self.lines_left(fit, channel, step),
+            motion_hz: lines(&[moved.unwrap_or_default()], step),
+            ..SiteScale::plain(
+                displacement_m,
+                positive(rms_about_mean(|| path.velocity.iter())),
+                force_n,
+            )
+        })
+    }
+
+    /// Strongest lines of what the fit leaves of the first run, in one channel or in all.
+    fn lines_left(&self, fit: &Fit, channel: Option<usize>, step: f64) -> [f64; LINES] {
+        let Some(run) = fit.discrepancy.first() else {
+            return [0.0; LINES];
+        };
+        let signals: Vec<&[f64]> = match channel {
+            Some(i) => vec![&run[i]],
+            None => run.iter().map(Vec::as_slice).collect(),
+        };
+        lines(&signals, step)
+    }
+
+    /// Typical force around a place, N: inertia of the masses it joins, else the measured forces.
+    fn force_scale(&self, at: &Location, acceleration: f64) -> f64 {
+        let inertia = masses_at(&self.model, at).fold(0.0, f64::max) * acceleration;
+        if inertia > 0.0 {
+            return inertia;
+        }
+        let forces = self
+            .model
+            .outputs
+            .iter()
+            .zip(self.output_std())
+            .filter(|(output, _)| output.kind == OutputKind::Force)
+            .map(|(_, std)| std);
+        forces.fold(0.0, f64::max)
+    }
+}
+
+/// A site that does not move in the nominal model still gets finite starting values.
+fn positive(value: f64) -> f64 {
+    if value > 0.0 && value.is_finite() {
+        value
+    } else {
+        1.0
+    }
+}
+
+fn masses_at<'a>(model: &'a Model, at: &'a Location) -> impl Iterator<Item = f64> + 'a {
+    let names: Vec<&String> = match at {
+        Location::Between(pair) => pair.iter().collect(),
+        Location::Mass(mass) => vec![mass],
+        Location::Input(_) | Location::Channel(_) => vec![],
+    };
+    let masses = model.masses.iter();
+    masses
+        .filter(move |mass| names.contains(&&mass.name))
+        .map(|mass| mass.value)
+}
+
+fn mass_at(model: &Model, at: &Location) -> Option<f64> {
+    masses_at(model, at).min_by(f64::total_cmp)
+}
+
+fn stiffness_at(model: &Model, at: &Location) -> f64 {
+    let springs = model.springs.iter().filter(|spring| match at {
+        Location::Between(pair) => same_pair(&spring.between, pair),
+        Location::Mass(mass) => spring.between.contains(mass),
+        Location::Input(_) | Location::Channel(_) => false,
+    });
+    springs.map(|spring| spring.stiffness).sum()
+}
+
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY];
+    let [low, high] = values.fold(start, |[low, high], v| [low.min(v), high.max(v)]);
+    if low < high { [low, high] } else { [-1.0, 1.0] }
+}
+
+/// The strongest lines of several signals together, strongest first, each signal counted by the
+/// share of its own power.
+fn lines(signals: &[&[f64]], step: f64) -> [f64; LINES] {
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    for signal in signals {
+        let Ok(spectrum) = spectrum(signal, 1.0 / step, Window::Hann, Trend::Linear) else {
+            continue;
+        };
+        let Ok(peaks) = find_peaks(&spectrum, &PeakOptions::default()) else {
+            continue;
+        };
+        let size = positive(rms_about_mean(|| signal.iter()));
+        for peak in peaks {
+            let near = |known: &&mut (f64, f64)| {
+                (known.0 - peak.freq_hz).abs() < 2.0 * spectrum.bin_width_hz()
+            };
+            match found.iter_mut().find(near) {
+                Some(known) => known.1 += peak.amplitude / size,
+                None => found.push((peak.freq_hz, peak.amplitude / size)),
+            }
+        }
+    }
+    found.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
+    let mut lines = [0.0; LINES];
+    for (line, (freq_hz, _)) in lines.iter_mut().zip(found) {
+        *line = freq_hz;
+    }
+    lines
+}
+
+/// The step of values that lie on a coarse lattice.
+fn lattice_step(mut values: Vec<f64>) -> Option<f64> {
+    let count = values.len();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    if values.len() < 3 || values.len() > MOST_LEVELS || values.len() * 2 > count {
+        return None;
+    }
+    let (first, last) = (values[0], values[values.len() - 1]);
+    let rounding = 1e-9 * (last - first);
+    let gaps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let smallest = gaps.filter(|gap| *gap > rounding).fold(f64::INFINITY, f64::min);
+    // The span says the step more finely than a printed gap does.
+    let step = (last - first) / ((last - first) / smallest).round();
+    let off = |value: &&f64| {
+        let level = (**value - first) / step;
+        (level - level.round()).abs() > OFF_LATTICE
+    };
+    let strays = values.iter().filter(off).count();
+    (strays as f64 <= OFF_SHARE * values.len() as f64).then_some(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_a_lattice_is_found_and_smooth_values_have_none() {
+        let smooth: Vec<f64> = (0..2000).map(|i| (f64::from(i) * 0.01).sin()).collect();
+        let coarse: Vec<f64> = smooth.iter().map(|v| (v / 0.02).round() * 0.02).collect();
+        let step = lattice_step(coarse).unwrap_or(f64::NAN);
+        assert!((step - 0.02).abs() < 1e-12, "{step}");
+        assert_eq!(lattice_step(smooth), None);
+    }
+
+    #[test]
+    fn verify_the_strongest_lines_come_first() {
+        let tone = |f: f64, t: f64| (std::f64::consts::TAU * f * t).sin();
+        let signal: Vec<f64> = (0..4000)
+            .map(|i| f64::from(i) * 1e-3)
+            .map(|t| 0.2 * tone(7.3, t) + 0.5 * tone(41.1, t))
+            .collect();
+        let found = lines(&[&signal], 1e-3);
+        assert!((found[0] - 41.1).abs() < 0.02 && (found[1] - 7.3).abs() < 0.02);
+    }
+}
