@@ -6,6 +6,7 @@ use simgap_simulate::{Run, Simulator};
 
 use crate::BlindError;
 use crate::excitation::Signal;
+use crate::random::Random;
 
 /// Steps of the truth per sample of the record. The diagnosis steps with the record, so that its
 /// integration errors show; odd, so that every other sample stays every other one.
@@ -13,11 +14,18 @@ pub const OVERSAMPLING: usize = 9;
 
 /// Maps with a memory of the signal: they see it finely sampled and from before the record starts.
 /// Every other map acts on the samples that are recorded.
-const WITH_MEMORY: &[&str] = &["sensor_delay", "sensor_lag", "alternating_timing"];
+const WITH_MEMORY: &[&str] = &[
+    "sensor_delay",
+    "sensor_lag",
+    "alternating_timing",
+    "clock_skew",
+];
 
 /// One record to be taken.
 #[derive(Debug, Clone)]
 pub(crate) struct Bench {
+    /// Number of the record in its case: clocks have another phase in each.
+    pub(crate) index: usize,
     /// One for each input of the model.
     pub(crate) signals: Vec<Signal>,
     /// Displacement of each mass where the motion begins, m.
@@ -89,7 +97,7 @@ impl Bench {
     ) -> Result<Vec<Vec<f64>>, BlindError> {
         let (chain, plant): (Vec<Placed>, Vec<Placed>) = effects
             .iter()
-            .cloned()
+            .map(|placed| placed.in_record(self.index))
             .partition(|placed| matches!(placed.action(), Action::Output(_) | Action::Sampling(_)));
         let run = self.fine_run(model);
         let simulator = Simulator::new(model, &plant, refinement)?;
@@ -126,13 +134,21 @@ impl Bench {
     ) -> Vec<f64> {
         let here = |placed: &&Placed| placed.at == Location::Channel(channel.to_string());
         let has_memory = |placed: &&Placed| WITH_MEMORY.contains(&placed.effect.kind());
-        let apply = |values: &[f64], placed: &Placed, time_step_s: f64| match placed.action() {
-            Action::Output(map) | Action::Sampling(map) => map.apply(Sampled {
-                values,
-                time_step_s,
-                first_index: 0,
-            }),
-            _ => values.to_vec(),
+        let apply = |values: &[f64], placed: &Placed, time_step_s: f64| {
+            let mut random = Random::of_case(self.len as u64, self.index, 0);
+            let struck = placed
+                .effect
+                .strike(&placed.values, values, &mut || random.unit());
+            match placed.action() {
+                Action::Output(_) | Action::Sampling(_) if struck.is_some() => {
+                    struck.unwrap_or_default()
+                }
+                Action::Output(map) | Action::Sampling(map) => map.apply(Sampled {
+                    start_s: self.start_s,
+                    ..Sampled::from_start(values, time_step_s)
+                }),
+                _ => values.to_vec(),
+            }
         };
         // What happens while sampling comes after what happens before, however it is listed.
         let mut chain: Vec<&Placed> = chain.iter().filter(here).collect();

@@ -1,5 +1,7 @@
 //! A case before its records are written: where the effect sits, how large it is, whether it matters.
 
+use std::f64::consts::PI;
+
 use simgap_effects::{Effect, Family, Placed, find, sites};
 use simgap_model::Model;
 
@@ -52,11 +54,11 @@ pub(crate) fn deviations(random: &mut Random, model: &Model, most: f64) -> Vec<P
         .filter_map(|kind| find(kind))
     {
         for at in sites(model, effect.site()) {
-            placed.push(Placed {
+            placed.push(Placed::new(
                 effect,
                 at,
-                values: vec![1.0 + random.uniform(-most, most)],
-            });
+                vec![1.0 + random.uniform(-most, most)],
+            ));
         }
     }
     placed
@@ -99,14 +101,17 @@ pub(crate) fn place(
         let Some(at) = random.pick(&sites).cloned() else {
             return Ok(None);
         };
-        let mut placed = Placed {
-            effect,
-            at,
-            values: vec![wrong_factor(random)],
-        };
+        let mut placed = Placed::new(effect, at, vec![wrong_factor(random)]);
         if effect.family() != Family::NominalParameter {
-            let scale = site_scale(model, bench, &placed.at)?;
+            let mut scale = site_scale(model, bench, &placed.at)?;
+            let [from_hz, to_hz] = draft.plant.band_hz;
+            let highest = (3.0 * to_hz).min(0.35 / bench.time_step_s);
+            scale
+                .lines_hz
+                .fill(random.log_uniform(0.5 * from_hz, highest));
+            scale.motion_hz[0] = random.log_uniform(from_hz, to_hz);
             let instance = instance(random, effect, &scale);
+            placed.of_record = own_values(random, &placed, draft.benches.len());
             let smallest = smallest_gap(recipe, draft.noise_share) * 1.2;
             let target = random.log_uniform(smallest, LARGEST_GAP / 1.2);
             let factor = factor_for(target, |factor| {
@@ -126,6 +131,22 @@ pub(crate) fn place(
         effects.push(placed);
     }
     Ok(Some(effects))
+}
+
+/// The phases that the clock of an effect has in each record; what else a record has of its own is
+/// at rest.
+fn own_values(random: &mut Random, placed: &Placed, records: usize) -> Vec<Vec<f64>> {
+    let places = placed.own_places();
+    let clock = placed.effect.clock();
+    let mut value = |place: usize| match clock {
+        Some(clock) if clock.phase == place => random.uniform(-PI, PI),
+        _ => placed.effect.parameters()[place].neutral.unwrap_or(0.0),
+    };
+    if places.is_empty() {
+        return vec![];
+    }
+    let of_record = |_| places.iter().map(|&place| value(place)).collect();
+    (0..records).map(of_record).collect()
 }
 
 fn smallest_gap(recipe: &Recipe, noise_share: f64) -> f64 {
@@ -208,11 +229,8 @@ fn simpler(placed: &Placed) -> Vec<Placed> {
     };
     let levels = coulomb.map(|effect| {
         let [sliding, breakaway] = [placed.values[0], placed.values[1]];
-        [sliding, 0.5 * (sliding + breakaway)].map(|level| Placed {
-            effect,
-            at: placed.at.clone(),
-            values: vec![level],
-        })
+        [sliding, 0.5 * (sliding + breakaway)]
+            .map(|level| Placed::new(effect, placed.at.clone(), vec![level]))
     });
     levels.into_iter().flatten().collect()
 }

@@ -102,6 +102,7 @@ impl Effect for Foreign {
                 lower: 0.0,
                 upper: f64::INFINITY,
                 neutral: Some(0.0),
+                per_record: false,
             },
             Parameter {
                 name: "shape",
@@ -109,6 +110,7 @@ impl Effect for Foreign {
                 lower: 0.0,
                 upper: f64::INFINITY,
                 neutral: None,
+                per_record: false,
             },
         ]
     }

@@ -129,7 +129,8 @@ fn benches(random: &mut Random, plant: &Plant) -> Vec<Bench> {
     let sizes = [1.0, random.log_uniform(0.35, 1.3), random.uniform(0.5, 1.0)];
     sizes
         .iter()
-        .map(|size| {
+        .enumerate()
+        .map(|(index, size)| {
             let len = random.log_uniform(SAMPLES[0], SAMPLES[1]) as usize;
             let time_step_s = 1.0 / plant.sample_rate_hz;
             let style = if varied {
@@ -168,6 +169,7 @@ fn benches(random: &mut Random, plant: &Plant) -> Vec<Bench> {
                 2 * (16 + random.below(100))
             };
             Bench {
+                index,
                 signals,
                 displacement,
                 velocity,
@@ -282,6 +284,7 @@ fn equivalents_beside_others(draft: &Draft, i: usize) -> Vec<crate::Equivalent> 
         }
         match placed.action() {
             Action::Model(change) => change(&mut model, &placed.at),
+            Action::Member(_) | Action::Mode { .. } => return vec![],
             Action::Force(_)
                 if !["constant_force", "harmonic_force"].contains(&placed.effect.kind()) =>
             {

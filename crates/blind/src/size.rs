@@ -24,12 +24,13 @@ pub(crate) fn site_scale(
         Location::Mass(mass) => vec![mass],
         Location::Input(_) | Location::Channel(_) => vec![],
     };
-    let largest = model
-        .masses
-        .iter()
-        .filter(|mass| names.contains(&&mass.name))
-        .map(|mass| mass.value)
-        .fold(0.0, f64::max);
+    let masses = || {
+        let here = model.masses.iter();
+        here.filter(|mass| names.contains(&&mass.name))
+            .map(|mass| mass.value)
+    };
+    let largest = masses().fold(0.0, f64::max);
+    let lightest = masses().min_by(f64::total_cmp).unwrap_or(1.0);
     let measured_force = model
         .outputs
         .iter()
@@ -52,18 +53,46 @@ pub(crate) fn site_scale(
         Location::Between(_) | Location::Mass(_) => 0.0,
     };
     let positive = |value: f64| if value > 0.0 { value } else { 1.0 };
+    let channel = match at {
+        Location::Channel(name) => model.outputs.iter().position(|o| &o.channel == name),
+        _ => None,
+    };
+    let springs = model.springs.iter().filter(|spring| match at {
+        Location::Between(pair) => simgap_model::same_pair(&spring.between, pair),
+        _ => false,
+    });
+    let stiffness: f64 = springs.map(|spring| spring.stiffness).sum();
+    let force_n = positive(if inertia > 0.0 {
+        inertia
+    } else {
+        measured_force
+    });
     Ok(SiteScale {
-        displacement_m: positive(std(&path.displacement)),
-        velocity_m_per_s: positive(std(&path.velocity)),
-        force_n: positive(if inertia > 0.0 {
-            inertia
-        } else {
-            measured_force
-        }),
         signal: positive(signal),
         time_step_s: bench.time_step_s,
         duration_s: bench.len as f64 * bench.time_step_s,
+        displacement_range_m: range(&path.displacement),
+        signal_range: channel.map_or([-1.0, 1.0], |i| range(&outputs[i])),
+        signal_step: 0.1 * positive(signal),
+        stiffness_n_per_m: if stiffness > 0.0 {
+            stiffness
+        } else {
+            force_n / positive(std(&path.displacement))
+        },
+        mass_kg: lightest,
+        ..SiteScale::plain(
+            positive(std(&path.displacement)),
+            positive(std(&path.velocity)),
+            force_n,
+        )
     })
+}
+
+fn range(values: &[f64]) -> [f64; 2] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY];
+    values
+        .iter()
+        .fold(start, |[low, high], &v| [low.min(v), high.max(v)])
 }
 
 /// Parameter values of a random instance: one of the effect's starts with its proportions and
@@ -79,6 +108,8 @@ pub(crate) fn instance(random: &mut Random, effect: &dyn Effect, scale: &SiteSca
         .iter()
         .zip(start)
         .map(|(parameter, value)| match parameter.neutral {
+            _ if parameter.per_record => value,
+            Some(neutral) if neutral.is_infinite() => value * random.uniform(0.8, 1.25),
             None => value * random.log_uniform(0.6, 1.6),
             Some(neutral) => {
                 let sign = if parameter.lower < neutral { flip } else { 1.0 };
@@ -101,6 +132,7 @@ pub(crate) fn scaled(effect: &dyn Effect, instance: &[f64], factor: f64) -> Vec<
         .zip(instance)
         .map(|(parameter, &value)| match parameter.neutral {
             None => value,
+            _ if parameter.per_record => value,
             // A limit that vanishes at infinity comes closer as the effect grows.
             Some(neutral) if neutral.is_infinite() => value / factor,
             Some(neutral) => neutral + factor * (value - neutral),
@@ -197,12 +229,9 @@ mod tests {
     #[test]
     fn prop_an_effect_scaled_to_nothing_is_neutral() {
         let scale = SiteScale {
-            displacement_m: 1e-3,
-            velocity_m_per_s: 0.1,
-            force_n: 50.0,
             signal: 2.0,
-            time_step_s: 1e-3,
             duration_s: 10.0,
+            ..SiteScale::plain(1e-3, 0.1, 50.0)
         };
         for &effect in simgap_effects::catalogue() {
             for seed in 0..10 {
@@ -212,7 +241,7 @@ mod tests {
                     effect.parameters().iter().zip(scaled(effect, &values, 0.0))
                 {
                     assert!((parameter.lower..=parameter.upper).contains(&value));
-                    if let Some(neutral) = parameter.neutral {
+                    if let Some(neutral) = parameter.neutral.filter(|_| !parameter.per_record) {
                         assert_eq!(value, neutral, "{} {}", effect.kind(), parameter.name);
                     }
                 }

@@ -43,11 +43,7 @@ damper = [{ name = "d", between = ["m1", "ground"], damping = 8.0 }]
 const LOOSE: &str = r#"mass = [{ name = "m1", value = 2.0 }]"#;
 
 fn place(kind: &str, at: Location, values: &[f64]) -> Placed {
-    Placed {
-        effect: find(kind).unwrap(),
-        at,
-        values: values.to_vec(),
-    }
+    Placed::new(find(kind).unwrap(), at, values.to_vec())
 }
 
 fn mass() -> Location {
@@ -83,12 +79,7 @@ fn settled(model: &Model, effect: &Placed) -> Vec<f64> {
     let simulator = Simulator::new(model, &plant, 4).unwrap();
     let mut y = simulator.predict(&run, &[0.0, 0.0]).unwrap().remove(0);
     if let Action::Output(map) = effect.action() {
-        y = map.apply(Sampled {
-            values: &y,
-            time_step_s: 2e-3,
-
-            first_index: 0,
-        });
+        y = map.apply(Sampled::from_start(&y, 2e-3));
     }
     y.split_off(4000)
 }

@@ -163,7 +163,13 @@ fn nominal_parameters(problem: &Problem) -> Vec<Placed> {
     problem
         .nominal_parameters()
         .into_iter()
-        .map(|candidate| Placed::new(candidate.effect, candidate.at, vec![1.0; candidate.effect.parameters().len()]))
+        .map(|candidate| {
+            Placed::new(
+                candidate.effect,
+                candidate.at,
+                vec![1.0; candidate.effect.parameters().len()],
+            )
+        })
         .collect()
 }
 

@@ -122,7 +122,8 @@ pub(crate) fn fit_with(
         };
         let mut kept = at.columns;
         at = refresh(problem, &layout, &theta, here, |run, place| {
-            (weights.keep_nuisance && layout.is_nuisance(place)).then(|| std::mem::take(&mut kept[run][place]))
+            (weights.keep_nuisance && layout.is_nuisance(place))
+                .then(|| std::mem::take(&mut kept[run][place]))
         })?;
         if gain >= weights.converged {
             exact = !weights.keep_nuisance;

@@ -86,7 +86,10 @@ fn best_of(
             initial: vec![state.clone()],
         };
         let fit = fit_with(alone, &start, weights, true, |_, _, _| None)?;
-        if best.as_ref().is_none_or(|known| fit.objective < known.objective) {
+        if best
+            .as_ref()
+            .is_none_or(|known| fit.objective < known.objective)
+        {
             best = Some(fit);
         }
     }

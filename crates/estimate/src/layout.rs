@@ -147,7 +147,11 @@ impl Layout {
             (f64::NEG_INFINITY, f64::INFINITY)
         };
         self.push(
-            if size > 0.0 && size.is_finite() { size } else { 1.0 },
+            if size > 0.0 && size.is_finite() {
+                size
+            } else {
+                1.0
+            },
             [parameter.lower.max(least), parameter.upper.min(most)],
         );
         if let (Some(last), Some(mean)) = (self.prior_std.last_mut(), self.prior_mean.last_mut()) {
@@ -216,8 +220,7 @@ impl Layout {
     /// The entry of a value of an effect, of a value of a record that of the first.
     pub(crate) fn entry(&self, effect: usize, place: usize) -> Option<usize> {
         let at = |list: &[(usize, usize)]| list.iter().position(|&key| key == (effect, place));
-        at(&self.shared_values)
-            .or_else(|| at(&self.own_values).map(|own| self.run_offset(0) + own))
+        at(&self.shared_values).or_else(|| at(&self.own_values).map(|own| self.run_offset(0) + own))
     }
 
     pub(crate) fn pack(&self, start: &Start) -> Vec<f64> {

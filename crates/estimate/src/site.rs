@@ -51,7 +51,11 @@ impl Problem {
         let stiffness = stiffness_at(&self.model, at);
         let first = self.runs.first();
         let step = first.map_or(1.0, |run| run.time_step_s);
-        let measured = |i: usize| self.runs.iter().filter_map(move |r| r.measured[i].as_deref());
+        let measured = |i: usize| {
+            self.runs
+                .iter()
+                .filter_map(move |r| r.measured[i].as_deref())
+        };
         let moved = path.displacement.get(..first.map_or(0, |run| run.len));
         Ok(SiteScale {
             signal: positive(signal),
@@ -188,7 +192,9 @@ fn lattice_step(mut values: Vec<f64>) -> Option<f64> {
     let (first, last) = (values[0], values[values.len() - 1]);
     let rounding = 1e-9 * (last - first);
     let gaps = values.windows(2).map(|pair| pair[1] - pair[0]);
-    let smallest = gaps.filter(|gap| *gap > rounding).fold(f64::INFINITY, f64::min);
+    let smallest = gaps
+        .filter(|gap| *gap > rounding)
+        .fold(f64::INFINITY, f64::min);
     // The span says the step more finely than a printed gap does.
     let step = (last - first) / ((last - first) / smallest).round();
     let off = |value: &&f64| {

@@ -87,7 +87,11 @@ impl Simulator {
             }
         }
         // The members as all changes of the model leave them.
-        laws.extend(builders.into_iter().map(|(at, build)| (at, build(&model, at))));
+        laws.extend(
+            builders
+                .into_iter()
+                .map(|(at, build)| (at, build(&model, at))),
+        );
         // What happens while sampling comes after what happens before, however they are listed.
         output_maps.extend(sampling_maps);
         let mut elements = Vec::new();
@@ -192,7 +196,11 @@ impl Simulator {
                 signal.push(plan.read(at, &acceleration, base));
             }
         })?;
-        for (output, map) in self.output_maps.iter().filter(|(_, map)| keep(map.as_ref())) {
+        for (output, map) in self
+            .output_maps
+            .iter()
+            .filter(|(_, map)| keep(map.as_ref()))
+        {
             let signal = Sampled {
                 values: &predicted[*output],
                 time_step_s: run.time_step_s,
@@ -249,7 +257,11 @@ impl Simulator {
         let part = |from: usize, k: usize| -> Vec<f64> {
             let value = |i: usize| initial.get(i).copied().unwrap_or(0.0);
             let values: Vec<f64> = (from..from + known).map(value).collect();
-            following(&matrices.stiffness_matrix, values, self.added.iter().map(|s| s[k]))
+            following(
+                &matrices.stiffness_matrix,
+                values,
+                self.added.iter().map(|s| s[k]),
+            )
         };
         let displacement = part(0, 0);
         let velocity = part(known, 1);
