@@ -20,6 +20,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &constant_force::ConstantForce,
     // Measurement chain.
     &sensor_bias::SensorBias,
+    &sensor_gain::SensorGain,
     &sensor_delay::SensorDelay,
     &alternating_timing::AlternatingTiming,
     &alternating_gain::AlternatingGain,

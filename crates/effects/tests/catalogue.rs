@@ -117,6 +117,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "quadratic_stiffness",
         "constant_force",
         "sensor_bias",
+        "sensor_gain",
         "sensor_delay",
         "alternating_timing",
         "alternating_gain",
@@ -143,9 +144,11 @@ fn verify_parameter_names_carry_their_unit() {
             let place = format!("{}: {name} [{unit}]", effect.kind());
             assert!(snake_case(name), "{place}");
             assert!(seen.insert(name), "{place} is there twice");
-            // A ratio has no unit, and a sensor's bias has that of its channel.
-            if !["1", "unit of the output"].contains(unit) {
-                let suffix = format!("_{}", suffix_of(unit));
+            // A ratio has no unit, and a sensor's bias has that of its channel; a rate of it is per
+            // second.
+            let own = unit.trim_start_matches("unit of the output");
+            if !["1", ""].contains(&own) {
+                let suffix = format!("_{}", suffix_of(own).trim_start_matches('_'));
                 assert!(name.ends_with(&suffix), "{place}: needed is {suffix}");
             }
         }
