@@ -21,6 +21,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     // Measurement chain.
     &sensor_bias::SensorBias,
     &sensor_gain::SensorGain,
+    &sensor_drift::SensorDrift,
     &sensor_delay::SensorDelay,
     &alternating_timing::AlternatingTiming,
     &alternating_gain::AlternatingGain,

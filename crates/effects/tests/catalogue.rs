@@ -118,6 +118,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "constant_force",
         "sensor_bias",
         "sensor_gain",
+        "sensor_drift",
         "sensor_delay",
         "alternating_timing",
         "alternating_gain",

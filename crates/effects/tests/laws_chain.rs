@@ -24,3 +24,20 @@ fn verify_sensor_gain_of_either_sign() {
     let swapped = through(map("sensor_gain", &[-1.0]).as_ref(), &signal, 0.01);
     assert_eq!(swapped, [-0.5, 2.0, 0.0]);
 }
+
+#[test]
+fn verify_sensor_drift_counts_from_the_start_of_the_record() {
+    let map = map("sensor_drift", &[0.3]);
+    let signal: Vec<f64> = (0..50).map(|i| (0.3 * f64::from(i)).sin()).collect();
+    let whole = through(map.as_ref(), &signal, 0.02);
+    for (i, (found, y)) in whole.iter().zip(&signal).enumerate() {
+        assert_near(*found, y + 0.3 * 0.02 * i as f64, ROUNDING);
+    }
+    // A slice keeps its place, whatever the time stamp of the first sample.
+    let slice = map.apply(Sampled {
+        first_index: 20,
+        start_s: 1000.4,
+        ..Sampled::from_start(&signal[20..], 0.02)
+    });
+    assert_eq!(slice, whole[20..]);
+}

@@ -13,6 +13,7 @@ pub(crate) mod quadratic_damping;
 pub(crate) mod quadratic_stiffness;
 pub(crate) mod sensor_bias;
 pub(crate) mod sensor_delay;
+pub(crate) mod sensor_drift;
 pub(crate) mod sensor_gain;
 pub(crate) mod stiffness_error;
 pub(crate) mod stribeck_friction;
