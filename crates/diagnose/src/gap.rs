@@ -50,16 +50,25 @@ pub(crate) fn total(nrmse: &[f64]) -> f64 {
 /// never more than all of what is left.
 pub(crate) fn noise_floor(check: &Problem, corrected: &Prediction) -> Vec<f64> {
     let std = check.output_std();
-    (0..std.len())
+    noise_variance(&corrected.discrepancy, std.len())
+        .into_iter()
+        .enumerate()
+        .map(|(c, variance)| (variance.sqrt() / std[c]).min(corrected.nrmse[c]))
+        .collect()
+}
+
+/// Variance of the white noise in each channel of discrepancies, over all runs.
+pub(crate) fn noise_variance(discrepancy: &[Vec<Vec<f64>>], channels: usize) -> Vec<f64> {
+    (0..channels)
         .map(|c| {
             let (mut square, mut count) = (0.0, 0.0);
-            for run in &corrected.discrepancy {
+            for run in discrepancy {
                 let sigma =
                     white_noise_std(&run[c]).map_or_else(|_| short_noise(&run[c]), |n| n.std);
                 square += sigma * sigma * run[c].len() as f64;
                 count += run[c].len() as f64;
             }
-            ((square / f64::max(count, 1.0)).sqrt() / std[c]).min(corrected.nrmse[c])
+            square / f64::max(count, 1.0)
         })
         .collect()
 }

@@ -91,7 +91,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
 
     progress("nominal model");
     let nominal = fit_initial_states(&train, &[], &plain)?;
-    let recalibrated = recalibrate(&train, &nominal, &plain)?;
+    let recalibrated = recalibrate(request, &train, &nominal, &plain)?;
     let answer = search(request, &train, nominal, &recalibrated, progress)?;
 
     progress("check records");
@@ -145,10 +145,15 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
 }
 
 /// Re-estimates the nominal parameters, no effect added.
-fn recalibrate(train: &Problem, nominal: &Fit, weights: &Weights) -> Result<Fit, DiagnoseError> {
+fn recalibrate(
+    request: &Request<'_>,
+    train: &Problem,
+    nominal: &Fit,
+    weights: &Weights,
+) -> Result<Fit, DiagnoseError> {
     let start = Start {
         effects: vec![],
-        nominal: nominal_parameters(train),
+        nominal: nominal_parameters(request, train),
         initial: nominal.estimate.initial.clone(),
     };
     let loose = Weights {
@@ -158,11 +163,13 @@ fn recalibrate(train: &Problem, nominal: &Fit, weights: &Weights) -> Result<Fit,
     Ok(fit(train, &start, &loose)?)
 }
 
-/// Every nominal parameter at its nominal value.
-fn nominal_parameters(problem: &Problem) -> Vec<Placed> {
+/// Every nominal parameter at its nominal value, but those of withheld kinds.
+fn nominal_parameters(request: &Request<'_>, problem: &Problem) -> Vec<Placed> {
+    let withheld = |kind: &str| request.withheld.iter().any(|known| known == kind);
     problem
         .nominal_parameters()
         .into_iter()
+        .filter(|candidate| !withheld(candidate.effect.kind()))
         .map(|candidate| {
             Placed::new(
                 candidate.effect,
@@ -191,7 +198,7 @@ fn search(
     let plain = Weights::independent(channels);
     let first = Start {
         effects: vec![],
-        nominal: nominal_parameters(&short),
+        nominal: nominal_parameters(request, &short),
         initial: fit_initial_states(&short, &[], &plain)?.estimate.initial,
     };
     // The search, with the colour of the discrepancy as known before it.

@@ -22,6 +22,9 @@ const SURVIVORS: [usize; 2] = [5, 3];
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Prior of [`Weights::independent`] on nominal parameters.
 const NOMINAL_PRIOR: f64 = 0.04;
+/// A squared discrepancy within this factor of white noise leaves no room for a relevant effect; the
+/// estimate of the noise scatters by three percent.
+const NOTHING_LEFT: f64 = 1.06;
 /// Scores below this cannot reach the threshold of evidence after fitting.
 const HOPELESS: f64 = 1.0;
 
@@ -252,6 +255,16 @@ impl<'a> Search<'a> {
         picked
     }
 
+    /// Whether a set leaves nothing but white noise: no further effect could lower the squared
+    /// discrepancy by what makes it relevant.
+    fn is_exhausted(&self, set: &Hypothesis) -> bool {
+        let channels = self.problem.model.outputs.len();
+        let noise = crate::gap::noise_variance(&set.fit.discrepancy, channels);
+        let left = set.fit.variance.iter().zip(noise);
+        left.into_iter()
+            .all(|(variance, noise)| *variance < NOTHING_LEFT * noise)
+    }
+
     /// Sets of one, two and three effects that were fitted, best first.
     pub(crate) fn run(
         &self,
@@ -262,6 +275,9 @@ impl<'a> Search<'a> {
         let mut pool = self.extend(base, FITTED[0])?;
         let mut front = pool.clone();
         for (size, survivors) in SURVIVORS.iter().enumerate() {
+            if pool.iter().any(|set| self.is_exhausted(set)) {
+                break;
+            }
             step(["pairs of effects", "sets of three"][size]);
             let mut next: Vec<Hypothesis> = Vec::new();
             for survivor in front.iter().take(*survivors) {
