@@ -23,6 +23,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &sensor_gain::SensorGain,
     &sensor_drift::SensorDrift,
     &sensor_delay::SensorDelay,
+    &sensor_lag::SensorLag,
     &alternating_timing::AlternatingTiming,
     &alternating_gain::AlternatingGain,
 ];

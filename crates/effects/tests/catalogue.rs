@@ -120,6 +120,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "sensor_gain",
         "sensor_drift",
         "sensor_delay",
+        "sensor_lag",
         "alternating_timing",
         "alternating_gain",
     ];

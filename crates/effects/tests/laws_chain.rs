@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::f64::consts::PI;
+
 use common::{map, through};
 use simgap_effects::Sampled;
 
@@ -40,4 +42,68 @@ fn verify_sensor_drift_counts_from_the_start_of_the_record() {
         ..Sampled::from_start(&signal[20..], 0.02)
     });
     assert_eq!(slice, whole[20..]);
+}
+
+/// The lag after a ramp y = c t from rest: z = c (t − τ (1 − e^(−t/τ))), with no error from
+/// sampling as a ramp is linear between samples.
+#[test]
+fn verify_sensor_lag_of_a_ramp() {
+    let (step_s, slope) = (0.01, 3.0);
+    let ramp: Vec<f64> = (0..400).map(|i| slope * step_s * f64::from(i)).collect();
+    // Rounding of 400 steps, on values up to 12.
+    const SUMMED: f64 = 1e-12;
+    for time_constant_s in [1e-9, 0.002, 0.01, 0.3, 0.99, 1.01, 40.0, 1e6] {
+        let found = through(
+            map("sensor_lag", &[time_constant_s]).as_ref(),
+            &ramp,
+            step_s,
+        );
+        for (i, z) in found.iter().enumerate() {
+            let t = step_s * i as f64;
+            // −expm1 keeps the digits of 1 − e^(−t/τ); for t ≪ τ the difference loses them.
+            let x = t / time_constant_s;
+            let needed = if x < 1e-3 {
+                slope * time_constant_s * x * x * (0.5 - x * (1.0 / 6.0 - x / 24.0))
+            } else {
+                slope * (t + time_constant_s * (-x).exp_m1())
+            };
+            assert_near(*z, needed, SUMMED);
+        }
+    }
+}
+
+#[test]
+fn verify_sensor_lag_starts_in_the_steady_state() {
+    let level = [4.2; 30];
+    let found = through(map("sensor_lag", &[0.5]).as_ref(), &level, 0.01);
+    assert_eq!(found, level);
+    // A step between two samples is a ramp of one sample; long after it the lag has settled.
+    let mut step = [0.0; 4000];
+    step[10..].fill(1.0);
+    let found = through(map("sensor_lag", &[0.5]).as_ref(), &step, 0.01);
+    assert_eq!(found[9], 0.0);
+    let tau = 0.5_f64;
+    let at_step = 1.0 + tau / 0.01 * (-0.01 / tau).exp_m1();
+    for (i, z) in found.iter().enumerate().skip(10) {
+        let needed = 1.0 - (1.0 - at_step) * (-0.01 * (i - 10) as f64 / tau).exp();
+        assert_near(*z, needed, 1e3 * ROUNDING);
+    }
+}
+
+/// A sine of whole periods after the transient: gain 1/√(1 + (ωτ)²), phase −atan ωτ, and the
+/// linear interpolation lowers the amplitude by (ωΔt)²/12.
+#[test]
+fn verify_sensor_lag_of_a_sine() {
+    let (step_s, freq_hz, tau) = (0.001, 5.0, 0.02);
+    let omega = 2.0 * PI * freq_hz;
+    let sine: Vec<f64> = (0..2000)
+        .map(|i| (omega * step_s * f64::from(i)).sin())
+        .collect();
+    let found = through(map("sensor_lag", &[tau]).as_ref(), &sine, step_s);
+    let (gain, phase) = (1.0 / (omega * tau).hypot(1.0), -(omega * tau).atan());
+    let interpolated = (omega * step_s).powi(2) / 12.0;
+    for (i, z) in found.iter().enumerate().skip(1000) {
+        let needed = gain * (omega * step_s * i as f64 + phase).sin();
+        assert_near(*z, needed, 1.01 * gain * interpolated);
+    }
 }

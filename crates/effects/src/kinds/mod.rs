@@ -15,6 +15,7 @@ pub(crate) mod sensor_bias;
 pub(crate) mod sensor_delay;
 pub(crate) mod sensor_drift;
 pub(crate) mod sensor_gain;
+pub(crate) mod sensor_lag;
 pub(crate) mod stiffness_error;
 pub(crate) mod stribeck_friction;
 pub(crate) mod viscous_damping;
