@@ -24,6 +24,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &sensor_drift::SensorDrift,
     &sensor_delay::SensorDelay,
     &sensor_lag::SensorLag,
+    &clipping::Clipping,
     &alternating_timing::AlternatingTiming,
     &alternating_gain::AlternatingGain,
 ];

@@ -121,6 +121,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "sensor_drift",
         "sensor_delay",
         "sensor_lag",
+        "clipping",
         "alternating_timing",
         "alternating_gain",
     ];

@@ -5,8 +5,8 @@ mod common;
 
 use std::f64::consts::PI;
 
-use common::{map, through};
-use simgap_effects::Sampled;
+use common::{effect, map, through};
+use simgap_effects::{Sampled, SiteScale};
 
 /// A few roundings of double precision.
 const ROUNDING: f64 = 1e-14;
@@ -106,4 +106,52 @@ fn verify_sensor_lag_of_a_sine() {
         let needed = gain * (omega * step_s * i as f64 + phase).sin();
         assert_near(*z, needed, 1.01 * gain * interpolated);
     }
+}
+
+#[test]
+fn verify_clipping_of_a_sine() {
+    let sine: Vec<f64> = (0..1000)
+        .map(|i| (2.0 * PI * f64::from(i) / 1000.0).sin())
+        .collect();
+    let found = through(map("clipping", &[0.5, -0.8]).as_ref(), &sine, 0.01);
+    for (z, y) in found.iter().zip(&sine) {
+        let needed = if *y > 0.5 {
+            0.5
+        } else if *y < -0.8 {
+            -0.8
+        } else {
+            *y
+        };
+        assert_eq!(*z, needed);
+    }
+    // sin φ > ½ for a third of the period.
+    assert_eq!(found.iter().filter(|z| **z == 0.5).count(), 333);
+}
+
+#[test]
+fn verify_clipping_on_one_side_and_away_from_zero() {
+    let signal = [5.0, 6.0, 7.0, 8.0];
+    let above = through(map("clipping", &[6.5, -1e9]).as_ref(), &signal, 0.01);
+    assert_eq!(above, [5.0, 6.0, 6.5, 6.5]);
+    let below = through(
+        map("clipping", &[-5.0, -6.0]).as_ref(),
+        &[-7.0, -5.5, -4.0],
+        0.01,
+    );
+    assert_eq!(below, [-6.0, -5.5, -5.0]);
+    let mut crossed = [1.0, 2.0];
+    effect("clipping").make_physical(&mut crossed);
+    assert_eq!(crossed, [1.0, 1.0]);
+}
+
+/// A record clipped at both ends shows the levels at the ends of its range: a start is beside them.
+#[test]
+fn verify_clipping_starts_beside_the_edges_of_the_record() {
+    let scale = SiteScale {
+        signal_range: [-0.8, 0.5],
+        ..common::scale()
+    };
+    let starts = effect("clipping").starts(&scale);
+    let near = |start: &Vec<f64>| (start[0] - 0.5).abs() < 0.02 && (start[1] + 0.8).abs() < 0.02;
+    assert!(starts.iter().any(near), "{starts:?}");
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod alternating_gain;
 pub(crate) mod alternating_timing;
+pub(crate) mod clipping;
 pub(crate) mod constant_force;
 pub(crate) mod coulomb_friction;
 pub(crate) mod cubic_stiffness;
