@@ -25,6 +25,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &sensor_delay::SensorDelay,
     &sensor_lag::SensorLag,
     &clipping::Clipping,
+    &quantisation::Quantisation,
     &alternating_timing::AlternatingTiming,
     &alternating_gain::AlternatingGain,
 ];

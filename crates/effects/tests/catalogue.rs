@@ -122,6 +122,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "sensor_delay",
         "sensor_lag",
         "clipping",
+        "quantisation",
         "alternating_timing",
         "alternating_gain",
     ];

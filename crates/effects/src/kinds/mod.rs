@@ -12,6 +12,7 @@ pub(crate) mod linear_stiffness;
 pub(crate) mod mass_error;
 pub(crate) mod quadratic_damping;
 pub(crate) mod quadratic_stiffness;
+pub(crate) mod quantisation;
 pub(crate) mod sensor_bias;
 pub(crate) mod sensor_delay;
 pub(crate) mod sensor_drift;
