@@ -28,6 +28,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &quantisation::Quantisation,
     &alternating_timing::AlternatingTiming,
     &alternating_gain::AlternatingGain,
+    &tone_pickup::TonePickup,
 ];
 
 /// Every effect known, nominal parameters first.

@@ -125,6 +125,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "quantisation",
         "alternating_timing",
         "alternating_gain",
+        "tone_pickup",
     ];
     for kind in promised {
         assert!(simgap_effects::find(kind).is_some(), "{kind} is gone");

@@ -191,3 +191,47 @@ fn verify_quantisation_starts_only_where_a_lattice_is_seen() {
     assert!(effect("quantisation").starts(&without).is_empty());
     assert_eq!(effect("quantisation").starts(&common::scale()), [[0.01]]);
 }
+
+#[test]
+fn verify_tone_pickup_is_a_sine_on_the_clock_of_the_record() {
+    let (amplitude, freq_hz, phase, step_s) = (0.3, 50.0, 1.1, 0.00137);
+    let map = map("tone_pickup", &[amplitude, freq_hz, phase]);
+    let signal: Vec<f64> = (0..1000).map(|i| 0.01 * f64::from(i)).collect();
+    // Rounding of angles up to 2π f t = 1200.
+    const ANGLE: f64 = 1e-12;
+    for (first_index, start_s) in [(0, 0.0), (300, 2.5)] {
+        let found = map.apply(Sampled {
+            first_index,
+            start_s,
+            ..Sampled::from_start(&signal, step_s)
+        });
+        for (i, (z, y)) in found.iter().zip(&signal).enumerate() {
+            let t = start_s + step_s * i as f64;
+            let needed = y + amplitude * (2.0 * PI * freq_hz * t + phase).sin();
+            assert_near(*z, needed, ANGLE);
+        }
+    }
+}
+
+#[test]
+fn verify_tone_pickup_starts_at_the_lines_and_at_the_mains_as_sampled() {
+    let frequencies = |step_s: f64, lines: [f64; 2]| -> Vec<f64> {
+        let scale = SiteScale {
+            time_step_s: step_s,
+            lines_hz: [lines[0], lines[1], 0.0, 0.0],
+            ..common::scale()
+        };
+        let starts = effect("tone_pickup").starts(&scale);
+        starts.iter().map(|start| start[1]).collect()
+    };
+    assert_eq!(frequencies(0.001, [3.1, 12.7]), [3.1, 12.7, 50.0]);
+    // Seen already, a little off: within 1/20 s.
+    assert_eq!(frequencies(0.001, [50.02, 0.0]), [50.02]);
+    // At 80 Hz, 50 Hz is stored as 30 Hz; at 50 Hz, as a constant.
+    let stored = frequencies(1.0 / 80.0, [0.0; 2]);
+    assert!(
+        stored.len() == 1 && (stored[0] - 30.0).abs() < 1e-9,
+        "{stored:?}"
+    );
+    assert!(frequencies(0.02, [0.0; 2]).is_empty());
+}

@@ -20,4 +20,5 @@ pub(crate) mod sensor_gain;
 pub(crate) mod sensor_lag;
 pub(crate) mod stiffness_error;
 pub(crate) mod stribeck_friction;
+pub(crate) mod tone_pickup;
 pub(crate) mod viscous_damping;
