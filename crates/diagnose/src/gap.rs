@@ -1,7 +1,8 @@
 //! How large the gap is on the check records.
 
-use simgap_effects::Placed;
+use simgap_effects::{Action, Placed};
 use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states};
+use simgap_model::Location;
 use simgap_signal::noise::white_noise_std;
 
 use crate::diagnosis::{ChannelGap, Gap};
@@ -48,23 +49,40 @@ pub(crate) fn total(nrmse: &[f64]) -> f64 {
 
 /// White measurement noise of each channel over std(measured), from what is left after correction;
 /// never more than all of what is left.
-pub(crate) fn noise_floor(check: &Problem, corrected: &Prediction) -> Vec<f64> {
+pub(crate) fn noise_floor(check: &Problem, effects: &[Placed], corrected: &Prediction) -> Vec<f64> {
     let std = check.output_std();
-    noise_variance(&corrected.discrepancy, std.len())
+    noise_variance(&corrected.discrepancy, &stepped(check, effects))
         .into_iter()
         .enumerate()
         .map(|(c, variance)| (variance.sqrt() / std[c]).min(corrected.nrmse[c]))
         .collect()
 }
 
+/// Which channels effects store in steps.
+pub(crate) fn stepped(problem: &Problem, effects: &[Placed]) -> Vec<bool> {
+    let at = |channel: &str| {
+        effects.iter().any(|placed| {
+            placed.at == Location::Channel(channel.to_string())
+                && matches!(placed.action(), Action::Sampling(map) if map.is_stepped())
+        })
+    };
+    let outputs = problem.model.outputs.iter();
+    outputs.map(|output| at(&output.channel)).collect()
+}
+
 /// Variance of the white noise in each channel of discrepancies, over all runs.
-pub(crate) fn noise_variance(discrepancy: &[Vec<Vec<f64>>], channels: usize) -> Vec<f64> {
-    (0..channels)
+///
+/// Where values are stored in steps, noise moves some of them by a step and most not at all: there
+/// the robust estimate would be zero.
+pub(crate) fn noise_variance(discrepancy: &[Vec<Vec<f64>>], stepped: &[bool]) -> Vec<f64> {
+    (0..stepped.len())
         .map(|c| {
             let (mut square, mut count) = (0.0, 0.0);
             for run in discrepancy {
-                let sigma =
-                    white_noise_std(&run[c]).map_or_else(|_| short_noise(&run[c]), |n| n.std);
+                let sigma = match white_noise_std(&run[c]) {
+                    Ok(noise) if !stepped[c] => noise.std,
+                    _ => short_noise(&run[c]),
+                };
                 square += sigma * sigma * run[c].len() as f64;
                 count += run[c].len() as f64;
             }
@@ -98,9 +116,9 @@ pub(crate) fn gap(
     check: &Problem,
     nominal: &Prediction,
     recalibrated: &Prediction,
-    corrected: &Prediction,
+    (effects, corrected): (&[Placed], &Prediction),
 ) -> Gap {
-    let floor = noise_floor(check, corrected);
+    let floor = noise_floor(check, effects, corrected);
     let totals = [nominal, recalibrated, corrected].map(|p| total(&p.nrmse));
     let noise = total(&floor);
     Gap {

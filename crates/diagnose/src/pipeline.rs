@@ -107,12 +107,18 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         .into_par_iter()
         .map(|effects| predict(&check, effects, &plain))
         .collect::<Result<Vec<_>, _>>()?;
-    let gap = gap(&check, &predictions[0], &predictions[1], &predictions[2]);
+    let gap = gap(
+        &check,
+        &predictions[0],
+        &predictions[1],
+        (&placed, &predictions[2]),
+    );
     let mut verdict = answer::verdict(&train, &answer, &gap);
     let left_unknown = verdict.status == crate::Status::Unknown;
     let (gap, placed, shown) = if left_unknown {
         // Blame nothing: the corrected model is the recalibrated one.
-        let gap = crate::gap::gap(&check, &predictions[0], &predictions[1], &predictions[1]);
+        let nothing = (&nominal_placed[..], &predictions[1]);
+        let gap = crate::gap::gap(&check, &predictions[0], &predictions[1], nothing);
         verdict.effects.clear();
         (gap, recalibrated.estimate.nominal.clone(), 1)
     } else {

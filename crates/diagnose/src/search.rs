@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
-use simgap_effects::{Family, Placed, SiteScale};
+use simgap_effects::{Family, LINES, Placed, SiteScale};
 use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
 };
@@ -219,6 +219,21 @@ impl<'a> Search<'a> {
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.
     fn scores(&self, base: &Hypothesis, linear: &Base<'_>) -> Result<Vec<Score>, EstimateError> {
+        // Lines that the set leaves: where clocks and hidden modes start.
+        let mut lines: Vec<(Location, [f64; LINES])> = vec![];
+        for (candidate, _) in &self.candidates {
+            if lines.iter().all(|(at, _)| *at != candidate.at) {
+                let left = self.problem.lines_left(&base.fit, &candidate.at);
+                lines.push((candidate.at.clone(), left));
+            }
+        }
+        let sized = |candidate: &Candidate, scale: &SiteScale| {
+            let left = lines.iter().find(|(at, _)| *at == candidate.at);
+            SiteScale {
+                lines_hz: left.map_or(scale.lines_hz, |(_, lines)| *lines),
+                ..*scale
+            }
+        };
         let scored = self
             .candidates
             .par_iter()
@@ -226,7 +241,7 @@ impl<'a> Search<'a> {
             .map(|(candidate, scale)| match prior_score(base, candidate) {
                 // Already adjustable under its prior: its score starts from there.
                 Some(score) => vec![score],
-                None => score(linear, candidate, scale).unwrap_or_default(),
+                None => score(linear, candidate, &sized(candidate, scale)).unwrap_or_default(),
             })
             .collect::<Vec<_>>();
         let mut scores: Vec<Score> = scored.into_iter().flatten().collect();
@@ -258,8 +273,8 @@ impl<'a> Search<'a> {
     /// Whether a set leaves nothing but white noise: no further effect could lower the squared
     /// discrepancy by what makes it relevant.
     fn is_exhausted(&self, set: &Hypothesis) -> bool {
-        let channels = self.problem.model.outputs.len();
-        let noise = crate::gap::noise_variance(&set.fit.discrepancy, channels);
+        let stepped = crate::gap::stepped(self.problem, set.effects());
+        let noise = crate::gap::noise_variance(&set.fit.discrepancy, &stepped);
         let left = set.fit.variance.iter().zip(noise);
         left.into_iter()
             .all(|(variance, noise)| *variance < NOTHING_LEFT * noise)

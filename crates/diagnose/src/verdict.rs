@@ -23,9 +23,9 @@ pub(crate) const INDISTINGUISHABLE: f64 = 4.0;
 pub(crate) const CLOSES: f64 = 0.6;
 /// Share of what recalibration leaves that named effects must close, else the cause is unknown: a
 /// familiar effect in the place of a foreign one leaves more.
-pub(crate) const CLOSES_BEYOND_RECALIBRATION: f64 = 0.75;
+pub(crate) const CLOSES_BEYOND_RECALIBRATION: f64 = 0.85;
 /// A residual below this multiple of the noise floor does not stand out of the noise.
-pub(crate) const STANDS_OUT: f64 = 2.0;
+pub(crate) const STANDS_OUT: f64 = 1.6;
 /// A rival must lead by this much to take a place: less is the accuracy of the fits.
 const TIE: f64 = 0.5;
 /// Swaps before the set is taken as it stands.

@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
-use simgap_effects::{Clock, Effect, Placed, SiteScale};
+use simgap_effects::{Action, Clock, Effect, Placed, SiteScale};
 
 use crate::fit::{Merit, fit_with, state_scale};
 use crate::layout::{Freedom, Layout};
@@ -164,7 +164,12 @@ impl Base<'_> {
             .filter(|&i| !parameters[i].per_record)
             .filter(|&i| parameters[i].neutral.is_some_and(f64::is_finite))
             .collect();
-        if sizes.is_empty() {
+        let stepped = match candidate.effect.action(shape) {
+            Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
+            _ => false,
+        };
+        // A limit, or a map that moves in steps, does not grow in proportion to anything.
+        if sizes.is_empty() || stepped {
             return self.score_as_it_stands(candidate, shape);
         }
         let mut columns = Vec::new();

@@ -30,10 +30,7 @@ impl Problem {
             path.velocity.extend(one.velocity);
             path.acceleration.extend(one.acceleration);
         }
-        let channel = match at {
-            Location::Channel(name) => self.model.outputs.iter().position(|o| &o.channel == name),
-            _ => None,
-        };
+        let channel = self.channel_at(at);
         let inertia = self.force_scale(at, rms_about_mean(|| path.acceleration.iter()));
         let signal = match (at, channel) {
             (_, Some(i)) => self.output_std()[i],
@@ -72,7 +69,7 @@ impl Problem {
                 force_n / displacement_m
             },
             mass_kg: mass_at(&self.model, at).unwrap_or(1.0),
-            lines_hz: self.lines_left(fit, channel, step),
+            lines_hz: self.lines_left(fit, at),
             motion_hz: lines(&[moved.unwrap_or_default()], step),
             ..SiteScale::plain(
                 displacement_m,
@@ -82,16 +79,25 @@ impl Problem {
         })
     }
 
-    /// Strongest lines of what the fit leaves of the first run, in one channel or in all.
-    fn lines_left(&self, fit: &Fit, channel: Option<usize>, step: f64) -> [f64; LINES] {
-        let Some(run) = fit.discrepancy.first() else {
+    /// Strongest lines of what a fit leaves of the first run, Hz: of the channel at the place, of
+    /// all channels elsewhere.
+    #[must_use]
+    pub fn lines_left(&self, fit: &Fit, at: &Location) -> [f64; LINES] {
+        let (Some(left), Some(run)) = (fit.discrepancy.first(), self.runs.first()) else {
             return [0.0; LINES];
         };
-        let signals: Vec<&[f64]> = match channel {
-            Some(i) => vec![&run[i]],
-            None => run.iter().map(Vec::as_slice).collect(),
+        let signals: Vec<&[f64]> = match self.channel_at(at) {
+            Some(i) => vec![&left[i]],
+            None => left.iter().map(Vec::as_slice).collect(),
         };
-        lines(&signals, step)
+        lines(&signals, run.time_step_s)
+    }
+
+    fn channel_at(&self, at: &Location) -> Option<usize> {
+        match at {
+            Location::Channel(name) => self.model.outputs.iter().position(|o| &o.channel == name),
+            _ => None,
+        }
     }
 
     /// Typical force around a place, N: inertia of the masses it joins, else the measured forces.
