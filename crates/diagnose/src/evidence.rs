@@ -10,7 +10,7 @@
 //! information criterion with the number of samples that are independent, \[Schwarz1978\]; the
 //! temperature T in (3) allows for what (2) does not see.
 
-use simgap_effects::Placed;
+use simgap_effects::Parameter;
 use simgap_estimate::{Fit, Problem, Weights};
 use simgap_signal::correlation::effective_sample_count;
 
@@ -43,14 +43,18 @@ pub(crate) fn evidence(fit: &Fit, effective_samples: f64) -> f64 {
     -fit.objective - 0.5 * freedom(fit) * effective_samples.ln()
 }
 
-/// k of (1): parameters of the effects; one that every record has of its own counts once for each.
+/// k of (1): parameters of the effects. One that every record has of its own counts once for each; the
+/// start of a hidden state does not count, as initial states do not.
 pub(crate) fn freedom(fit: &Fit) -> f64 {
     let runs = fit.estimate.initial.len();
-    let count = |placed: &Placed| {
-        let own = placed.own_places().len();
-        placed.values.len() - own + own * runs
+    let count = |parameter: &Parameter| match (parameter.per_record, parameter.neutral) {
+        (false, _) => 1,
+        (true, None) => runs,
+        (true, Some(_)) => 0,
     };
-    fit.estimate.effects.iter().map(count).sum::<usize>() as f64
+    let effects = fit.estimate.effects.iter();
+    let parameters = effects.flat_map(|placed| placed.effect.parameters());
+    parameters.map(count).sum::<usize>() as f64
 }
 
 /// p of (3).

@@ -18,6 +18,11 @@ static CATALOGUE: &[&dyn Effect] = &[
     &cubic_stiffness::CubicStiffness,
     &quadratic_stiffness::QuadraticStiffness,
     &constant_force::ConstantForce,
+    // Missing dynamics.
+    &attached_mode::AttachedMode,
+    &flexible_support::FlexibleSupport,
+    &input_lag::InputLag,
+    &input_delay::InputDelay,
     // Measurement chain.
     &sensor_bias::SensorBias,
     &sensor_gain::SensorGain,
@@ -29,6 +34,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &alternating_timing::AlternatingTiming,
     &alternating_gain::AlternatingGain,
     &tone_pickup::TonePickup,
+    &dropouts::Dropouts,
 ];
 
 /// Every effect known, nominal parameters first.

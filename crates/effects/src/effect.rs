@@ -25,6 +25,8 @@ pub enum SiteKind {
     Member,
     /// Two nodes that a spring joins.
     Spring,
+    /// A node and the ground that a spring joins.
+    GroundSpring,
     /// Two nodes that a damper joins.
     Damper,
     /// A member, or a mass and the ground, without a spring.

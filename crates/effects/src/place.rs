@@ -153,6 +153,7 @@ impl SiteKind {
         match self {
             SiteKind::Member
             | SiteKind::Spring
+            | SiteKind::GroundSpring
             | SiteKind::Damper
             | SiteKind::NoSpring
             | SiteKind::NoDamper => MEMBER,
@@ -186,6 +187,9 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
     match kind {
         SiteKind::Member => between(&|_| true),
         SiteKind::Spring => between(&sprung),
+        SiteKind::GroundSpring => {
+            between(&|pair| sprung(pair) && pair.iter().any(|node| node == GROUND))
+        }
         SiteKind::Damper => between(&damped),
         SiteKind::NoSpring => between(&|pair| !sprung(pair)),
         SiteKind::NoDamper => between(&|pair| !damped(pair)),

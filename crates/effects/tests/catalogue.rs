@@ -6,8 +6,10 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use common::{force, model, scale, through};
-use simgap_effects::{Action, Effect, Family, Parameter, Placed, SiteScale, catalogue, sites};
+use common::{force, model, scale};
+use simgap_effects::{
+    Action, Effect, Family, Parameter, Placed, Sampled, SiteScale, catalogue, sites,
+};
 use simgap_model::{Location, Model};
 
 /// What an action does to the plant or the signal, as numbers that can be compared.
@@ -30,7 +32,11 @@ fn trace(action: &Action, at: &Location) -> Vec<f64> {
             trace
         }
         Action::Input(map) | Action::Output(map) | Action::Sampling(map) => {
-            through(map.as_ref(), &signal(), scale().time_step_s)
+            let (values, measured) = (signal(), measured());
+            map.apply(Sampled {
+                measured: Some(&measured),
+                ..Sampled::from_start(&values, scale().time_step_s)
+            })
         }
     }
 }
@@ -60,6 +66,15 @@ fn matrix_entries(model: &Model) -> Vec<f64> {
 
 fn signal() -> Vec<f64> {
     (0..60).map(|i| 0.3 + (0.4 * f64::from(i)).sin()).collect()
+}
+
+/// The same as measured by a chain that loses samples and has spikes.
+fn measured() -> Vec<f64> {
+    let mut measured = signal();
+    measured[15] += 9.0;
+    let held = measured[30];
+    measured[30..34].fill(held);
+    measured
 }
 
 fn first_site(effect: &dyn Effect) -> Location {
@@ -126,6 +141,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "alternating_timing",
         "alternating_gain",
         "tone_pickup",
+        "dropouts",
     ];
     for kind in promised {
         assert!(simgap_effects::find(kind).is_some(), "{kind} is gone");
@@ -215,7 +231,10 @@ fn verify_starts_are_inside_the_range_and_visible() {
                     let inside = (parameter.lower..=parameter.upper).contains(value);
                     let place = format!("{kind}: {} starts at {value}", parameter.name);
                     assert!(value.is_finite() && inside, "{place}");
-                    assert_ne!(parameter.neutral, Some(*value), "{place}, which is neutral");
+                    // A hidden state may well begin at rest.
+                    if !parameter.per_record {
+                        assert_ne!(parameter.neutral, Some(*value), "{place}, which is neutral");
+                    }
                 }
                 let action = effect.action(&start);
                 assert_ne!(

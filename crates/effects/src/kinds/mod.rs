@@ -2,12 +2,17 @@
 
 pub(crate) mod alternating_gain;
 pub(crate) mod alternating_timing;
+pub(crate) mod attached_mode;
 pub(crate) mod clipping;
 pub(crate) mod constant_force;
 pub(crate) mod coulomb_friction;
 pub(crate) mod cubic_stiffness;
 pub(crate) mod damping_error;
+pub(crate) mod dropouts;
+pub(crate) mod flexible_support;
+pub(crate) mod input_delay;
 pub(crate) mod input_gain;
+pub(crate) mod input_lag;
 pub(crate) mod linear_stiffness;
 pub(crate) mod mass_error;
 pub(crate) mod quadratic_damping;

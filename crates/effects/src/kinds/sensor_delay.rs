@@ -10,8 +10,8 @@ use crate::signal_map::{Sampled, SignalMap};
 /// ```
 pub(crate) struct SensorDelay;
 
-struct Delay {
-    delay_s: f64,
+pub(super) struct Delay {
+    pub(super) delay_s: f64,
 }
 
 impl SignalMap for Delay {

@@ -24,8 +24,8 @@ pub(crate) struct SensorLag;
 /// Below this x, (2) is summed as a series: the difference would lose digits.
 const SMALL: f64 = 1e-2;
 
-struct Lag {
-    time_constant_s: f64,
+pub(super) struct Lag {
+    pub(super) time_constant_s: f64,
 }
 
 /// b₁ of (2).

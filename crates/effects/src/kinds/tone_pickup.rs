@@ -108,7 +108,7 @@ impl Effect for TonePickup {
     }
 
     fn action(&self, values: &[f64]) -> Action {
-        Action::Sampling(Box::new(Tone {
+        Action::Output(Box::new(Tone {
             amplitude: values[0],
             frequency_hz: values[1],
             phase_rad: values[2],

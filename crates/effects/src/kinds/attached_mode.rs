@@ -1,0 +1,151 @@
+//! A mass that the model lacks rides on one that it has.
+
+use std::f64::consts::TAU;
+
+use simgap_model::{Damper, Location, Mass, Model, Spring};
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// A mass that the model lacks rides on one that it has: a panel, a hose, a flexible load, seen at
+/// its host as one more mode.
+///
+/// ```text
+/// mₐ z̈ + cₐ (ż − ẋ) + kₐ (z − x) = 0,   F = cₐ (ż − ẋ) + kₐ (z − x)   on the host      (1)
+/// kₐ = mₐ ω²,   cₐ = 2 ζ mₐ ω,   ω = 2π f                                            (2)
+/// ```
+///
+/// The mass of the host stays what the model says; f and ζ are those of the attachment on a host
+/// that is held. At the first sample of a record the hidden mass is off the place and the speed at
+/// which it would ride along by values of that record's own.
+///
+/// Reference: \[DenHartog1956\], chapter 3.
+pub(crate) struct AttachedMode;
+
+/// Name of the hidden mass.
+const NAME: &str = "(attached)";
+
+pub(super) fn unused_name(model: &Model, stem: &str) -> String {
+    let taken = |name: &str| model.masses.iter().any(|mass| mass.name == name);
+    let mut name = stem.to_string();
+    while taken(&name) {
+        name.push('\'');
+    }
+    name
+}
+
+fn attach(model: &mut Model, at: &Location, [mass, freq_hz, damping_ratio]: [f64; 3]) {
+    let Location::Mass(host) = at else {
+        return;
+    };
+    if mass <= 0.0 {
+        return;
+    }
+    let name = unused_name(model, NAME);
+    let omega = TAU * freq_hz;
+    let between = [name.clone(), host.clone()];
+    model.masses.push(Mass {
+        name: name.clone(),
+        value: mass,
+    });
+    // (2)
+    model.springs.push(Spring {
+        name: name.clone(),
+        between: between.clone(),
+        stiffness: mass * omega * omega,
+    });
+    model.dampers.push(Damper {
+        name,
+        between,
+        damping: 2.0 * damping_ratio * mass * omega,
+    });
+}
+
+impl Effect for AttachedMode {
+    fn kind(&self) -> &'static str {
+        "attached_mode"
+    }
+
+    fn family(&self) -> Family {
+        Family::Dynamics
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Mass
+    }
+
+    fn summary(&self) -> &'static str {
+        "a mass that the model lacks vibrates on one that it has: a further mode"
+    }
+
+    fn equation(&self) -> &'static str {
+        "m_a z'' + c_a (z' - x') + k_a (z - x) = 0, k_a = m_a (2 pi f)^2, c_a = 4 pi zeta f m_a"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::size("attached_mass_kg", "kg", 0.0, f64::INFINITY),
+                Parameter::shape("natural_freq_hz", "Hz", 0.0, f64::INFINITY),
+                Parameter::shape("damping_ratio", "1", 1e-4, 2.0),
+                Parameter::size(
+                    "start_displacement_m",
+                    "m",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                )
+                .of_record(),
+                Parameter::size(
+                    "start_velocity_m_per_s",
+                    "m/s",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                )
+                .of_record(),
+            ]
+        }
+    }
+
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let nyquist = 0.5 / scale.time_step_s;
+        let mut freqs: Vec<f64> = scale.lines_hz.to_vec();
+        for motion in scale.motion_hz.into_iter().take(1) {
+            freqs.extend([0.6, 1.5, 3.0].map(|factor| factor * motion));
+        }
+        if freqs.iter().all(|freq| *freq <= 0.0) {
+            let usual = scale.velocity_m_per_s / scale.displacement_m / TAU;
+            freqs.extend([0.7, 1.5, 3.0].map(|factor| factor * usual));
+        }
+        let mut starts = vec![];
+        for freq in freqs.into_iter().filter(|f| *f > 0.0 && *f < nyquist) {
+            for damping_ratio in [0.02, 0.15] {
+                starts.push(vec![0.1 * scale.mass_kg, freq, damping_ratio, 0.0, 0.0]);
+            }
+        }
+        starts
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        let own = [values[0], values[1], values[2]];
+        Action::Mode {
+            change: Box::new(move |model, at| attach(model, at, own)),
+            start: [values[3], values[4]],
+        }
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[
+            (
+                "mass_error",
+                "well below its natural frequency the hidden mass only adds to its host",
+            ),
+            (
+                "harmonic_force",
+                "excited in a narrow band, a mode and a tone look alike",
+            ),
+        ]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "a sine sweep through the suspected frequency: a mode answers in proportion to the input and turns the phase"
+    }
+}

@@ -1,0 +1,147 @@
+//! What the model takes for the ground gives way.
+
+use std::f64::consts::TAU;
+
+use simgap_model::{Damper, GROUND, Location, Mass, Model, Spring, same_pair};
+
+use super::attached_mode::unused_name;
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// What the model takes for the ground gives way: the springs and dampers between a mass and the
+/// ground stand on a support with a mass, a stiffness and a damping of its own.
+///
+/// ```text
+/// mₛ s̈ + cₛ ṡ + kₛ s = k (x − s) + c (ẋ − ṡ)          (1)
+/// cₛ = 2 ζ √(kₛ mₛ)                                   (2)
+/// ```
+///
+/// k and c are the members of the nominal model at the place. A force that drives the mass acts
+/// against the ground, not against the support.
+///
+/// Reference: \[park-mold\], equation (4), for a mold on its support.
+pub(crate) struct FlexibleSupport;
+
+/// Name of the mass of the support.
+const NAME: &str = "(support)";
+
+fn stand(model: &mut Model, at: &Location, [mass, stiffness, damping_ratio]: [f64; 3]) {
+    let Location::Between(pair) = at else {
+        return;
+    };
+    if !stiffness.is_finite() || mass <= 0.0 || !pair.iter().any(|node| node == GROUND) {
+        return;
+    }
+    let name = unused_name(model, NAME);
+    let reroute = |between: &mut [String; 2]| {
+        if same_pair(between, pair) {
+            for node in between.iter_mut().filter(|node| *node == GROUND) {
+                *node = name.clone();
+            }
+        }
+    };
+    model
+        .springs
+        .iter_mut()
+        .for_each(|s| reroute(&mut s.between));
+    model
+        .dampers
+        .iter_mut()
+        .for_each(|d| reroute(&mut d.between));
+    let between = [name.clone(), GROUND.to_string()];
+    model.masses.push(Mass {
+        name: name.clone(),
+        value: mass,
+    });
+    model.springs.push(Spring {
+        name: name.clone(),
+        between: between.clone(),
+        stiffness,
+    });
+    // (2)
+    model.dampers.push(Damper {
+        name,
+        between,
+        damping: 2.0 * damping_ratio * (stiffness * mass).sqrt(),
+    });
+}
+
+impl Effect for FlexibleSupport {
+    fn kind(&self) -> &'static str {
+        "flexible_support"
+    }
+
+    fn family(&self) -> Family {
+        Family::Dynamics
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::GroundSpring
+    }
+
+    fn summary(&self) -> &'static str {
+        "what the model takes for the ground gives way"
+    }
+
+    fn equation(&self) -> &'static str {
+        "m_s s'' + c_s s' + k_s s = k (x - s) + c (x' - s'), c_s = 2 zeta sqrt(k_s m_s)"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::limit("support_stiffness_n_per_m", "N/m"),
+                Parameter::shape("support_mass_kg", "kg", 0.0, f64::INFINITY),
+                Parameter::shape("support_damping_ratio", "1", 1e-4, 2.0),
+                Parameter::size(
+                    "start_displacement_m",
+                    "m",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                )
+                .of_record(),
+                Parameter::size(
+                    "start_velocity_m_per_s",
+                    "m/s",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                )
+                .of_record(),
+            ]
+        }
+    }
+
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let mut starts = vec![];
+        for stiffer in [3.0, 15.0] {
+            let stiffness = stiffer * scale.stiffness_n_per_m;
+            for heavier in [0.1, 1.0] {
+                starts.push(vec![stiffness, heavier * scale.mass_kg, 0.05, 0.0, 0.0]);
+            }
+            // A support whose own mode is at a line that the model leaves.
+            for freq in scale.lines_hz.into_iter().take(2).filter(|f| *f > 0.0) {
+                let mass = (stiffness + scale.stiffness_n_per_m) / (TAU * freq).powi(2);
+                starts.push(vec![stiffness, mass, 0.05, 0.0, 0.0]);
+            }
+        }
+        starts
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        let own = [values[1], values[0], values[2]];
+        Action::Mode {
+            change: Box::new(move |model, at| stand(model, at, own)),
+            start: [values[3], values[4]],
+        }
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[(
+            "stiffness_error",
+            "well below the mode of the support it is a softer spring",
+        )]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "an accelerometer on the support, with excitation up to its natural frequency"
+    }
+}
