@@ -35,6 +35,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &alternating_gain::AlternatingGain,
     &tone_pickup::TonePickup,
     &dropouts::Dropouts,
+    &outliers::Outliers,
 ];
 
 /// Every effect known, nominal parameters first.

@@ -142,6 +142,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "alternating_gain",
         "tone_pickup",
         "dropouts",
+        "outliers",
     ];
     for kind in promised {
         assert!(simgap_effects::find(kind).is_some(), "{kind} is gone");

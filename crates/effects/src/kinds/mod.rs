@@ -15,6 +15,7 @@ pub(crate) mod input_gain;
 pub(crate) mod input_lag;
 pub(crate) mod linear_stiffness;
 pub(crate) mod mass_error;
+pub(crate) mod outliers;
 pub(crate) mod quadratic_damping;
 pub(crate) mod quadratic_stiffness;
 pub(crate) mod quantisation;
