@@ -36,6 +36,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &tone_pickup::TonePickup,
     &dropouts::Dropouts,
     &outliers::Outliers,
+    &clock_skew::ClockSkew,
 ];
 
 /// Every effect known, nominal parameters first.

@@ -143,6 +143,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "tone_pickup",
         "dropouts",
         "outliers",
+        "clock_skew",
     ];
     for kind in promised {
         assert!(simgap_effects::find(kind).is_some(), "{kind} is gone");

@@ -566,3 +566,53 @@ fn verify_short_records_are_left_alone() {
         }
     }
 }
+
+#[test]
+fn verify_clock_skew_stretches_a_sine() {
+    let (omega, step_s) = (20.0, 0.005);
+    // Interpolation between six neighbours leaves (5/1024) (ω Δt)⁶.
+    const INTERPOLATION: f64 = 5.0 / 1024.0 * 1e-6;
+    let sine = from_samples(2000, |i| (omega * step_s * i).sin());
+    for skew in [0.002, -0.002, 1e-5] {
+        let map = map("clock_skew", &[skew]);
+        let whole = through(map.as_ref(), &sine, step_s);
+        // Positive skew looks beyond the end by four samples at most.
+        for (i, z) in whole.iter().enumerate().take(1990).skip(5) {
+            let needed = (omega * step_s * (1.0 + skew) * i as f64).sin();
+            assert_near(*z, needed, INTERPOLATION + 1e3 * ROUNDING);
+        }
+        // A slice keeps the shift that has come together before it.
+        let slice = map.apply(Sampled {
+            first_index: 1000,
+            ..Sampled::from_start(&sine[1000..], step_s)
+        });
+        for (z, y) in slice[5..990].iter().zip(&whole[1005..1990]) {
+            assert_near(*z, *y, 1e3 * ROUNDING);
+        }
+    }
+    // Beyond the end the last value holds.
+    let fast = through(map("clock_skew", &[0.05]).as_ref(), &sine, step_s);
+    assert_eq!(fast[1950..], vec![sine[1999]; 50]);
+}
+
+#[test]
+fn verify_linear_maps_are_linear_and_keep_the_length() {
+    let mut rng = random(5);
+    let a = from_samples(300, |_| noise(&mut rng));
+    let b = from_samples(300, |_| noise(&mut rng));
+    let sum: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 2.0 * a - 0.5 * b).collect();
+    for (kind, value) in [
+        ("sensor_gain", 1.3),
+        ("sensor_lag", 0.03),
+        ("clock_skew", 0.01),
+    ] {
+        let map = map(kind, &[value]);
+        let [of_a, of_b, of_sum] = [&a, &b, &sum].map(|y| through(map.as_ref(), y, 0.01));
+        for ((a, b), sum) in of_a.iter().zip(&of_b).zip(&of_sum) {
+            assert_near(*sum, 2.0 * a - 0.5 * b, 1e2 * ROUNDING);
+        }
+        for len in 0..8 {
+            assert_eq!(through(map.as_ref(), &a[..len], 0.01).len(), len, "{kind}");
+        }
+    }
+}

@@ -4,6 +4,7 @@ pub(crate) mod alternating_gain;
 pub(crate) mod alternating_timing;
 pub(crate) mod attached_mode;
 pub(crate) mod clipping;
+pub(crate) mod clock_skew;
 pub(crate) mod constant_force;
 pub(crate) mod coulomb_friction;
 pub(crate) mod cubic_stiffness;
