@@ -132,6 +132,7 @@ fn place(site: SiteKind) -> &'static str {
     match site {
         SiteKind::Member => "two nodes that a member joins, or a mass and the ground",
         SiteKind::Spring => "two nodes that a spring joins",
+        SiteKind::GroundSpring => "a node and the ground that a spring joins",
         SiteKind::Damper => "two nodes that a damper joins",
         SiteKind::NoSpring => "two nodes, or a mass and the ground, without a spring between them",
         SiteKind::NoDamper => "two nodes, or a mass and the ground, without a damper between them",

@@ -10,6 +10,7 @@ use common::{force, model, scale};
 use simgap_effects::{
     Action, Effect, Family, Parameter, Placed, Sampled, SiteScale, catalogue, sites,
 };
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_model::{Location, Model};
 
 /// What an action does to the plant or the signal, as numbers that can be compared.
@@ -25,7 +26,11 @@ fn trace(action: &Action, at: &Location) -> Vec<f64> {
             let mut trace = Vec::new();
             for displacement in [-0.004, -0.001, 0.0, 0.003] {
                 for velocity in [-0.05, -0.002, 0.0, 0.001, 0.04] {
-                    trace.push(force(law.as_ref(), displacement, velocity));
+                    trace.push(if law.remembers() {
+                        moved(law.as_ref(), displacement)
+                    } else {
+                        force(law.as_ref(), displacement, velocity)
+                    });
                     trace.push(law.dry_level(f64::abs(velocity)).unwrap_or(0.0));
                 }
             }
@@ -39,6 +44,16 @@ fn trace(action: &Action, at: &Location) -> Vec<f64> {
             })
         }
     }
+}
+
+/// The force of a law with memory after a move from zero.
+fn moved(law: &dyn ForceLaw, displacement: f64) -> f64 {
+    let from = MemberMotion::default();
+    let to = MemberMotion {
+        displacement,
+        ..from
+    };
+    law.follow(law.first_memory(), from, to).0
 }
 
 /// The same without the effect.

@@ -1,0 +1,94 @@
+//! Damping that differs between the two directions of motion.
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// Damping that differs between the two directions of motion, on top of the damper of the model.
+///
+/// ```text
+/// F = c_f v  for v > 0,   F = c_b v  for v < 0
+/// ```
+///
+/// Reference: \[Janot2019\], for a positioning axis.
+pub(crate) struct AsymmetricDamping;
+
+struct Law {
+    forward: f64,
+    backward: f64,
+}
+
+impl ForceLaw for Law {
+    fn force(&self, motion: MemberMotion) -> f64 {
+        let damping = if motion.velocity > 0.0 {
+            self.forward
+        } else {
+            self.backward
+        };
+        damping * motion.velocity
+    }
+}
+
+impl Effect for AsymmetricDamping {
+    fn kind(&self) -> &'static str {
+        "asymmetric_damping"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Member
+    }
+
+    fn summary(&self) -> &'static str {
+        "the damping differs between the two directions of motion"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = c_f v (v > 0), c_b v (v < 0)"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::size(
+                    "damping_forward_n_s_per_m",
+                    "N s/m",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                ),
+                Parameter::size(
+                    "damping_backward_n_s_per_m",
+                    "N s/m",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                ),
+            ]
+        }
+    }
+
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let damping = 0.1 * scale.force_n / scale.velocity_m_per_s;
+        vec![vec![damping, -damping]]
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law {
+            forward: values[0],
+            backward: values[1],
+        }))
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[(
+            "quadratic_damping",
+            "over one range of speeds in one direction both only change the slope",
+        )]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "constant speeds in both directions: the force against the speed has another slope on each side"
+    }
+}

@@ -1,0 +1,109 @@
+//! A stop that the motion runs into.
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// A stop that the motion runs into, on either side.
+///
+/// ```text
+/// F = k_c (d − s_u)  for d > s_u,   F = k_c (d + s_l)  for d < −s_l,   else 0
+/// ```
+/// A stop on one side only has the other beyond reach.
+///
+/// Reference: \[Worden2001\], chapter 1.
+pub(crate) struct EndStop;
+
+struct Law {
+    upper: f64,
+    lower: f64,
+    stiffness: f64,
+}
+
+impl ForceLaw for Law {
+    fn force(&self, motion: MemberMotion) -> f64 {
+        let beyond = (motion.displacement - self.upper).max(0.0)
+            + (motion.displacement + self.lower).min(0.0);
+        self.stiffness * beyond
+    }
+}
+
+impl Effect for EndStop {
+    fn kind(&self) -> &'static str {
+        "end_stop"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Member
+    }
+
+    fn summary(&self) -> &'static str {
+        "the motion runs into a stop"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = k_c (d - s_u) (d > s_u), k_c (d + s_l) (d < -s_l)"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::limit("upper_stop_m", "m"),
+                Parameter::limit("lower_stop_m", "m"),
+                Parameter::shape("contact_stiffness_n_per_m", "N/m", 0.0, f64::INFINITY),
+            ]
+        }
+    }
+
+    /// On both sides and on each, at two shares of the range and two stiffnesses.
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let [low, high] = scale.displacement_range_m;
+        let (up, down) = (high.max(0.0), (-low).max(0.0));
+        let reach = up.max(down);
+        let far = 20.0 * reach;
+        let mut starts = vec![];
+        for harder in [2.0, 20.0] {
+            let stiffness = harder * scale.stiffness_n_per_m;
+            for share in [0.5, 0.75] {
+                let stop = share * reach;
+                starts.push(vec![stop, stop, stiffness]);
+                if up > 0.0 {
+                    starts.push(vec![share * up, far, stiffness]);
+                }
+                if down > 0.0 {
+                    starts.push(vec![far, share * down, stiffness]);
+                }
+            }
+        }
+        starts
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law {
+            upper: values[0],
+            lower: values[1],
+            stiffness: values[2],
+        }))
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[
+            (
+                "cubic_stiffness",
+                "a soft contact over a wide range of motion hardens like a cubic spring",
+            ),
+            (
+                "clipping",
+                "the displacement stays within limits under both, but a stop also brakes the machine",
+            ),
+        ]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "slow motion over the whole range: the force rises steeply at the stop"
+    }
+}

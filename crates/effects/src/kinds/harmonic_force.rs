@@ -1,0 +1,101 @@
+//! A force at one frequency that the inputs do not hold.
+
+use std::f64::consts::TAU;
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// A force at one frequency that the inputs do not hold: an unbalance, a pump, another machine.
+///
+/// ```text
+/// F(t) = A sin(2π f t + φ),   t on the clock of the record
+/// ```
+/// A positive force pushes the mass in the positive direction. Every record has a phase of its own.
+///
+/// Reference: \[DenHartog1956\], chapter 2.
+pub(crate) struct HarmonicForce;
+
+struct Law {
+    amplitude: f64,
+    omega: f64,
+    phase: f64,
+}
+
+impl ForceLaw for Law {
+    /// Negative, for a member force pushes its first node back.
+    fn force(&self, motion: MemberMotion) -> f64 {
+        -self.amplitude * (self.omega * motion.time_s + self.phase).sin()
+    }
+}
+
+impl Effect for HarmonicForce {
+    fn kind(&self) -> &'static str {
+        "harmonic_force"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Mass
+    }
+
+    fn summary(&self) -> &'static str {
+        "a force at one frequency acts that the inputs do not hold"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = A sin(2 pi f t + phi)"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::size("amplitude_n", "N", 0.0, f64::INFINITY),
+                Parameter::shape("frequency_hz", "Hz", 1e-6, f64::INFINITY),
+                Parameter::shape("phase_rad", "rad", f64::NEG_INFINITY, f64::INFINITY).of_record(),
+            ]
+        }
+    }
+
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let lines = scale.lines_hz.into_iter().filter(|line| *line > 0.0);
+        lines
+            .map(|line| vec![0.1 * scale.force_n, line, 0.0])
+            .collect()
+    }
+
+    fn clock(&self) -> Option<Clock> {
+        Some(Clock {
+            amplitude: 0,
+            phase: 2,
+        })
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law {
+            amplitude: values[0],
+            omega: TAU * values[1],
+            phase: values[2],
+        }))
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[
+            (
+                "tone_pickup",
+                "with one output a tone on the cable looks the same",
+            ),
+            (
+                "attached_mode",
+                "a lightly damped mode rings at one frequency",
+            ),
+        ]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "a record with the drive off and a second sensor: what shakes the machine shows in both"
+    }
+}

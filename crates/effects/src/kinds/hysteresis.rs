@@ -1,0 +1,162 @@
+//! A spring that remembers its way (Bouc-Wen).
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// A spring that remembers its way and yields (Bouc-Wen).
+///
+/// ```text
+/// F = k z                                                                           
+/// dz/dd = 1 − (β sgn(z ḋ) + γ) |z / u_y|ⁿ,   γ = 1 − β                              (1)
+/// ```
+///
+/// With β + γ = 1 the force levels off at k u_y. In the usual letters, ż = A ḋ − β′ |ḋ| |z|ⁿ⁻¹ z −
+/// γ′ ḋ |z|ⁿ, the yield displacement is (A / (β′ + γ′))^(1/n).
+///
+/// Reference: \[Ikhouane2007\], chapter 2.
+pub(crate) struct Hysteresis;
+
+/// Largest step of (1), share of the yield displacement, and most steps over a move.
+const STEP: f64 = 0.25;
+const MOST_STEPS: f64 = 40.0;
+
+struct Law {
+    stiffness: f64,
+    yield_displacement: f64,
+    loop_share: f64,
+    exponent: f64,
+    start: f64,
+}
+
+impl Law {
+    /// dz/dd in units of the yield displacement, (1), for a move of sign `s`.
+    fn slope(&self, z: f64, s: f64) -> f64 {
+        let against = if z * s >= 0.0 { 1.0 } else { -1.0 };
+        let yielding = self.loop_share * against + (1.0 - self.loop_share);
+        1.0 - yielding * power(z.abs(), self.exponent)
+    }
+}
+
+/// |z|ⁿ, without a logarithm for the usual exponents.
+fn power(size: f64, exponent: f64) -> f64 {
+    if exponent == 1.0 {
+        size
+    } else if exponent == 2.0 {
+        size * size
+    } else {
+        size.powf(exponent)
+    }
+}
+
+impl ForceLaw for Law {
+    fn force(&self, _: MemberMotion) -> f64 {
+        self.stiffness * self.yield_displacement * self.start
+    }
+
+    fn remembers(&self) -> bool {
+        true
+    }
+
+    fn first_memory(&self) -> f64 {
+        self.start
+    }
+
+    /// (1) by the classical Runge-Kutta method along the move; the memory is z / u_y.
+    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+        let moved = (to.displacement - from.displacement) / self.yield_displacement;
+        let mut z = memory;
+        if moved != 0.0 && moved.is_finite() {
+            let count = (moved.abs() / STEP).ceil().clamp(1.0, MOST_STEPS);
+            let h = (moved / count).clamp(-1.0, 1.0);
+            let s = moved.signum();
+            for _ in 0..count as usize {
+                let k1 = self.slope(z, s);
+                let k2 = self.slope(z + 0.5 * h * k1, s);
+                let k3 = self.slope(z + 0.5 * h * k2, s);
+                let k4 = self.slope(z + h * k3, s);
+                z += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+                z = z.clamp(-1.0, 1.0);
+            }
+        }
+        (self.stiffness * self.yield_displacement * z, z)
+    }
+}
+
+impl Effect for Hysteresis {
+    fn kind(&self) -> &'static str {
+        "hysteresis"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Member
+    }
+
+    fn summary(&self) -> &'static str {
+        "the force depends on the way the member came: a loop that yields"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = k z, dz/dd = 1 - (beta sgn(z d') + 1 - beta) |z / u_y|^n"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::size("hysteretic_stiffness_n_per_m", "N/m", 0.0, f64::INFINITY),
+                Parameter::shape("yield_displacement_m", "m", 0.0, f64::INFINITY),
+                Parameter::shape("loop_share", "1", 0.05, 1.0),
+                Parameter::shape("exponent", "1", 1.0, 6.0),
+                Parameter::size("start_share", "1", -1.0, 1.0).of_record(),
+            ]
+        }
+    }
+
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let mut starts = vec![];
+        for share in [0.1, 0.4, 1.2] {
+            let yields_at = share * scale.displacement_m;
+            for exponent in [1.0, 2.0] {
+                starts.push(vec![
+                    0.1 * scale.force_n / yields_at,
+                    yields_at,
+                    0.5,
+                    exponent,
+                    0.0,
+                ]);
+            }
+        }
+        starts
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law {
+            stiffness: values[0],
+            yield_displacement: values[1].max(f64::MIN_POSITIVE),
+            loop_share: values[2],
+            exponent: values[3],
+            start: values[4],
+        }))
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[
+            (
+                "presliding_friction",
+                "Dahl friction is this law with n = 1 and gamma = 0",
+            ),
+            (
+                "coulomb_friction",
+                "where the yield displacement is small against the motion",
+            ),
+        ]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "slow cycles of growing amplitude: the loops keep their shape at any speed and open with the amplitude"
+    }
+}

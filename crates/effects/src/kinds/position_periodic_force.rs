@@ -1,0 +1,99 @@
+//! A force that repeats along the travel.
+
+use std::f64::consts::TAU;
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// A force that repeats along the travel: cogging, a screw, a row of teeth.
+///
+/// ```text
+/// F = a sin(2π d / p) + b cos(2π d / p)
+/// ```
+///
+/// Reference: \[Otten1997\], cogging of a linear motor.
+pub(crate) struct PositionPeriodicForce;
+
+struct Law {
+    sine: f64,
+    cosine: f64,
+    per_metre: f64,
+}
+
+impl ForceLaw for Law {
+    fn force(&self, motion: MemberMotion) -> f64 {
+        let (sin, cos) = (self.per_metre * motion.displacement).sin_cos();
+        self.sine * sin + self.cosine * cos
+    }
+}
+
+/// Periods within the range of the motion: from less than one to many, each a sixth more.
+const FEWEST: f64 = 0.7;
+const STEP: f64 = 1.17;
+const COUNT: i32 = 20;
+
+impl Effect for PositionPeriodicForce {
+    fn kind(&self) -> &'static str {
+        "position_periodic_force"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Member
+    }
+
+    fn summary(&self) -> &'static str {
+        "a force repeats along the travel, such as cogging"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = a sin(2 pi d / p) + b cos(2 pi d / p)"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::size("sine_n", "N", f64::NEG_INFINITY, f64::INFINITY),
+                Parameter::size("cosine_n", "N", f64::NEG_INFINITY, f64::INFINITY),
+                Parameter::shape("period_m", "m", 1e-12, f64::INFINITY),
+            ]
+        }
+    }
+
+    /// The fit finds a period only near by: the starts are close to each other.
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let [low, high] = scale.displacement_range_m;
+        let force = 0.05 * scale.force_n;
+        let start = |k| vec![force, force, (high - low) / (FEWEST * STEP.powi(k))];
+        (0..COUNT).map(start).collect()
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law {
+            sine: values[0],
+            cosine: values[1],
+            per_metre: TAU / values[2],
+        }))
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[
+            (
+                "cubic_stiffness",
+                "a period longer than the travel bends the force like a soft spring",
+            ),
+            (
+                "harmonic_force",
+                "at constant speed the period in space is one in time",
+            ),
+        ]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "slow motion over the whole travel in both directions: the force repeats at the same places"
+    }
+}

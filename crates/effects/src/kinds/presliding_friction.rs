@@ -1,0 +1,133 @@
+//! Friction that gives like a spring before it slides (Dahl).
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// Friction that gives like a spring before it slides (Dahl).
+///
+/// ```text
+/// dF/dd = σ (1 − (F / F_c) sgn ḋ)                                                   (1)
+/// ```
+///
+/// Over a monotone move Δd, (1) is solved exactly:
+///
+/// ```text
+/// F₁ = s F_c + (F₀ − s F_c) exp(−σ |Δd| / F_c),   s = sgn Δd                        (2)
+/// ```
+///
+/// Reference: \[Dahl1968\].
+pub(crate) struct PreslidingFriction;
+
+struct Law {
+    friction: f64,
+    stiffness: f64,
+    start: f64,
+}
+
+impl ForceLaw for Law {
+    fn force(&self, _: MemberMotion) -> f64 {
+        self.start.clamp(-self.friction, self.friction)
+    }
+
+    fn remembers(&self) -> bool {
+        true
+    }
+
+    fn first_memory(&self) -> f64 {
+        self.start.clamp(-self.friction, self.friction)
+    }
+
+    /// (2); the memory is the force.
+    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+        let moved = to.displacement - from.displacement;
+        if self.friction <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let level = self.friction.copysign(moved);
+        let decay = (-self.stiffness * moved.abs() / self.friction).exp();
+        let force = if moved == 0.0 {
+            memory
+        } else {
+            level + (memory - level) * decay
+        };
+        (force, force)
+    }
+}
+
+impl Effect for PreslidingFriction {
+    fn kind(&self) -> &'static str {
+        "presliding_friction"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Member
+    }
+
+    fn summary(&self) -> &'static str {
+        "friction gives like a spring before it slides"
+    }
+
+    fn equation(&self) -> &'static str {
+        "dF/dd = sigma (1 - (F / F_c) sgn d')"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::size("friction_force_n", "N", 0.0, f64::INFINITY),
+                Parameter::shape("presliding_stiffness_n_per_m", "N/m", 0.0, f64::INFINITY),
+                Parameter::size("start_force_n", "N", f64::NEG_INFINITY, f64::INFINITY).of_record(),
+            ]
+        }
+    }
+
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let friction = 0.1 * scale.force_n;
+        [0.02, 0.15, 0.8]
+            .map(|share| vec![friction, friction / (share * scale.displacement_m), 0.0])
+            .to_vec()
+    }
+
+    fn contains(&self) -> &'static [&'static str] {
+        &["coulomb_friction"]
+    }
+
+    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        [0.02, 0.15, 0.8]
+            .map(|share| {
+                let stiffness = values[0] / (share * scale.displacement_m);
+                vec![values[0], stiffness, 0.0]
+            })
+            .to_vec()
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law {
+            friction: values[0],
+            stiffness: values[1],
+            start: values[2],
+        }))
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[
+            (
+                "coulomb_friction",
+                "where the motion is large against the presliding displacement",
+            ),
+            (
+                "hysteresis",
+                "Dahl friction is a Bouc-Wen hysteresis with n = 1 and gamma = 0",
+            ),
+        ]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "small reversals after large ones: before it slides the member moves in proportion to the force"
+    }
+}

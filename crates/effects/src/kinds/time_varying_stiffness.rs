@@ -1,0 +1,106 @@
+//! A spring whose stiffness swings in time.
+
+use std::f64::consts::TAU;
+
+use simgap_integrate::exact::{ForceLaw, MemberMotion};
+
+use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
+
+/// A spring whose stiffness swings in time: a gear mesh, a rotating shaft that is not round.
+///
+/// ```text
+/// F = k_a sin(2π f t + φ) d,   t on the clock of the record
+/// ```
+/// Every record has a phase of its own.
+///
+/// Reference: \[Nayfeh1979\], chapter 5.
+pub(crate) struct TimeVaryingStiffness;
+
+struct Law {
+    amplitude: f64,
+    omega: f64,
+    phase: f64,
+}
+
+impl ForceLaw for Law {
+    fn force(&self, motion: MemberMotion) -> f64 {
+        self.amplitude * (self.omega * motion.time_s + self.phase).sin() * motion.displacement
+    }
+}
+
+impl Effect for TimeVaryingStiffness {
+    fn kind(&self) -> &'static str {
+        "time_varying_stiffness"
+    }
+
+    fn family(&self) -> Family {
+        Family::Force
+    }
+
+    fn site(&self) -> SiteKind {
+        SiteKind::Spring
+    }
+
+    fn summary(&self) -> &'static str {
+        "the stiffness of the spring swings in time"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F = k_a sin(2 pi f t + phi) d"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::size("stiffness_amplitude_n_per_m", "N/m", 0.0, f64::INFINITY),
+                Parameter::shape("frequency_hz", "Hz", 1e-6, f64::INFINITY),
+                Parameter::shape("phase_rad", "rad", f64::NEG_INFINITY, f64::INFINITY).of_record(),
+            ]
+        }
+    }
+
+    /// A motion at one frequency and a stiffness at another leave lines at their sum and difference.
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let nyquist = 0.5 / scale.time_step_s;
+        let resolution = 1.0 / scale.duration_s;
+        let mut found: Vec<f64> = vec![];
+        for line in scale.lines_hz.into_iter().filter(|line| *line > 0.0) {
+            let motions = scale.motion_hz.into_iter().take(2).filter(|m| *m > 0.0);
+            let sums = motions.flat_map(|motion| [line + motion, (line - motion).abs()]);
+            for freq in std::iter::once(line).chain(sums) {
+                let known = found.iter().any(|f| (f - freq).abs() < 0.5 * resolution);
+                if !known && freq > resolution && freq < nyquist {
+                    found.push(freq);
+                }
+            }
+        }
+        let start = |freq| vec![0.1 * scale.stiffness_n_per_m, freq, 0.0];
+        found.into_iter().map(start).collect()
+    }
+
+    fn clock(&self) -> Option<Clock> {
+        Some(Clock {
+            amplitude: 0,
+            phase: 2,
+        })
+    }
+
+    fn action(&self, values: &[f64]) -> Action {
+        Action::Force(Box::new(Law {
+            amplitude: values[0],
+            omega: TAU * values[1],
+            phase: values[2],
+        }))
+    }
+
+    fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
+        &[(
+            "harmonic_force",
+            "of a member under a constant load both are a force at one frequency",
+        )]
+    }
+
+    fn experiment(&self) -> &'static str {
+        "the same excitation at several amplitudes: its lines grow with the motion, those of a force do not"
+    }
+}
