@@ -22,9 +22,9 @@ use crate::signal_map::{Sampled, SignalMap};
 /// s = ⅔ of the third largest of the nine changes on one side       (4)
 /// ```
 ///
-/// with q the smallest change in the record. In white noise of deviation 1 both σ and s are about
-/// 1. A smooth, stepping or ringing signal changes beside a group as it does within, so that (4)
-/// keeps it out of (1); two of the nine changes may belong to another spike. There the map delivers
+/// Here q is the smallest change in the record. In white noise both σ and s are about its deviation.
+/// A smooth, stepping or ringing signal changes beside a group as it does within, so that (4) keeps
+/// it out of (1); two of the nine changes may belong to another spike. At a spike the map delivers
 /// what was measured, as the record says nothing of the plant there.
 ///
 /// Reference: \[BendatPiersol2010\], intermittent noise spikes.
