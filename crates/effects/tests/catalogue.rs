@@ -24,7 +24,7 @@ fn trace(action: &Action, at: &Location) -> Vec<f64> {
         Action::Member(build) => trace(&Action::Force(build(&model(), at)), at),
         Action::Force(law) => {
             let mut trace = Vec::new();
-            for displacement in [-0.004, -0.001, 0.0, 0.003] {
+            for displacement in [-0.004, -0.001, 0.0, 0.0045] {
                 for velocity in [-0.05, -0.002, 0.0, 0.001, 0.04] {
                     trace.push(if law.remembers() {
                         moved(law.as_ref(), displacement)
