@@ -12,7 +12,7 @@ use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
 use crate::search::{Hypothesis, Search, name};
-use crate::verdict::{Judged, judge, prune};
+use crate::verdict::{Judged, judge, prune, simplest};
 use crate::{DiagnoseError, answer, locate};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
@@ -233,7 +233,7 @@ fn search(
     let singles = again(&singles)?;
 
     progress("verdict");
-    let best = finalists.into_iter().next().unwrap_or(base);
+    let best = simplest(&search, finalists, &singles).unwrap_or(base);
     let mut set = prune(&search, best)?;
     if set.effects().is_empty() {
         // Nothing beyond small errors of the nominal parameters: with those held exactly, is there

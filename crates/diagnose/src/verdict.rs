@@ -70,6 +70,28 @@ fn relevant(problem: &Problem, larger: &Fit, smaller: &Fit) -> bool {
     moved > MOVES && fall(smaller, larger) > RELEVANT
 }
 
+/// The best of the finalists, or a smaller set that predicts as well but for what a simulation may
+/// be off: two effects can imitate one.
+pub(crate) fn simplest(
+    search: &Search<'_>,
+    finalists: Vec<Hypothesis>,
+    singles: &[Hypothesis],
+) -> Option<Hypothesis> {
+    let best = finalists.first()?.clone();
+    let smaller = finalists.iter().chain(singles);
+    let mut smaller: Vec<&Hypothesis> = smaller
+        .filter(|set| set.effects().len() < best.effects().len())
+        .filter(|set| !relevant(search.problem, &best.fit, &set.fit))
+        .collect();
+    smaller.sort_by(|a, b| {
+        let size = |set: &Hypothesis| set.effects().len();
+        size(a)
+            .cmp(&size(b))
+            .then(b.evidence.total_cmp(&a.evidence))
+    });
+    Some(smaller.first().map_or(best, |&set| set.clone()))
+}
+
 /// Relative fall of the squared discrepancy from a poorer fit to a better one, on the channel that
 /// profits most: an effect may show on one channel alone.
 pub(crate) fn fall(poorer: &Fit, better: &Fit) -> f64 {

@@ -27,7 +27,7 @@ struct Law {
 
 impl ForceLaw for Law {
     fn force(&self, _: MemberMotion) -> f64 {
-        self.start.clamp(-self.friction, self.friction)
+        self.start * self.friction
     }
 
     fn remembers(&self) -> bool {
@@ -35,7 +35,7 @@ impl ForceLaw for Law {
     }
 
     fn first_memory(&self) -> f64 {
-        self.start.clamp(-self.friction, self.friction)
+        self.start * self.friction
     }
 
     /// (2); the memory is the force.
@@ -81,7 +81,7 @@ impl Effect for PreslidingFriction {
             &[
                 Parameter::size("friction_force_n", "N", 0.0, f64::INFINITY),
                 Parameter::shape("presliding_stiffness_n_per_m", "N/m", 0.0, f64::INFINITY),
-                Parameter::size("start_force_n", "N", f64::NEG_INFINITY, f64::INFINITY).of_record(),
+                Parameter::size("start_share", "1", -1.0, 1.0).of_record(),
             ]
         }
     }

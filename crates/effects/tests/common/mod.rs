@@ -98,7 +98,7 @@ pub(crate) fn force(law: &dyn ForceLaw, displacement: f64, velocity: f64) -> f64
     law.force(MemberMotion {
         displacement,
         velocity,
-        time_s: 0.0,
+        time_s: 0.013,
     })
 }
 
