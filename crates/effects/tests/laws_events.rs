@@ -125,6 +125,10 @@ fn clean_records() -> Vec<(String, Vec<f64>)> {
             (a, b) = (next, a);
             next
         });
+        for step in [0.5, 3.0, 10.0] {
+            let name = format!("resonance of period {period} in steps of {step}");
+            add(&name, stored_in_steps(&resonance, step));
+        }
         add(&format!("resonance of period {period}"), resonance);
         // Struck every 500 samples, it rings and dies away.
         let ring = from_samples(count, |i| {
@@ -142,12 +146,56 @@ fn clean_records() -> Vec<(String, Vec<f64>)> {
             .zip(motion)
         {
             let noisy: Vec<f64> = signal.iter().map(|y| y + 1e-3 * noise(&mut rng)).collect();
+            let range = signal.iter().fold(0.0, |most, y| f64::max(most, y.abs()));
+            for levels in [5.0, 30.0, 300.0] {
+                let coarse = stored_in_steps(&signal, range / levels);
+                add(
+                    &format!("stick-slip {name} at {step} in {levels} levels"),
+                    coarse,
+                );
+                let coarse = stored_in_steps(&noisy, range / levels);
+                add(
+                    &format!("stick-slip {name} at {step} with noise in {levels} levels"),
+                    coarse,
+                );
+            }
             add(&format!("stick-slip {name} at {step}"), signal);
             add(&format!("stick-slip {name} at {step} with noise"), noisy);
         }
     }
     let clipped = sine(200.0).iter().map(|y| y.clamp(-0.7, 0.6)).collect();
     add("clipped", clipped);
+    let loud = from_samples(count, |i| 2.0 * (0.03 * i).sin() + 0.1 * noise(&mut rng));
+    let loud = loud.iter().map(|y| y.clamp(-1.9, 1.7)).collect();
+    add("clipped with noise", loud);
+    // Little noise on a lattice: single samples flicker by one step.
+    for share in [0.1, 0.2, 0.3, 0.5, 1.0] {
+        let flicker = from_samples(count, |i| {
+            (0.002 * i).sin() + 0.01 * share * noise(&mut rng)
+        });
+        add(
+            &format!("flicker of {share} steps"),
+            stored_in_steps(&flicker, 0.01),
+        );
+        let struck = from_samples(count, |i| {
+            let since = i % 500.0;
+            (-0.03 * since).exp() * (0.7 * since).sin() + 0.001 * share * noise(&mut rng)
+        });
+        add(
+            &format!("ringing on flicker of {share} steps"),
+            stored_in_steps(&struck, 0.001),
+        );
+    }
+    let through_half = |i: f64| match i % 100.0 {
+        p if p < 49.0 => 0.0,
+        p if !(50.0..99.0).contains(&p) => 0.5,
+        _ => 1.0,
+    };
+    let soft = from_samples(count, |i| through_half(i) + 0.001 * noise(&mut rng));
+    add("square wave through a value between", soft);
+    let pulse = |i: f64| if i % 15.0 < 3.0 { 1.0 } else { 0.0 };
+    let pulses = from_samples(count, |i| pulse(i) + 0.001 * noise(&mut rng));
+    add("short pulses all the time", pulses);
     let rectified = sine(200.0).iter().map(|y| y.max(0.0)).collect();
     add("rectified", rectified);
     let mut decay = from_samples(count, |i| (-0.01 * i).exp() * (0.1 * i).sin());

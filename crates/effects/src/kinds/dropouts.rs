@@ -17,7 +17,7 @@ use crate::signal_map::{Sampled, SignalMap};
 ///
 /// - at the ends of the range: clipping;
 /// - on a lattice, by chance: expected are n pᵐ runs of m repeats, p from the changes by one or
-///   two steps, and runs are only believed where there are many more; and at a crest;
+///   two steps, and runs are only believed where there are many more;
 /// - where the machine rests: it comes to rest and leaves it gently, by changes that shrink and
 ///   grow, whereas lost samples end in a jump.
 ///
@@ -31,8 +31,6 @@ const OFF_LATTICE: f64 = 0.05;
 const OFF_SHARE: f64 = 0.02;
 /// With fewer changes than this nothing can be said.
 const LEAST_CHANGES: usize = 16;
-/// On a lattice, the mean change must be so many steps: else repeats are its nature.
-const MEAN_CHANGE_STEPS: f64 = 4.0;
 /// On a lattice, a run of lost samples ends in a change of more steps than this.
 const JUMP_STEPS: f64 = 2.5;
 /// A single zero that a neighbour is closer to than this share of the mean change is a crossing.
@@ -69,7 +67,7 @@ struct Changes {
 }
 
 impl Changes {
-    /// `None` where there are too few changes, or a lattice is too coarse.
+    /// `None` where there are too few changes.
     fn of(values: &[f64]) -> Option<Changes> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut count, mut sum) = (0, 0.0);
@@ -85,9 +83,6 @@ impl Changes {
         }
         let mean = sum / count as f64;
         let step = lattice_step(values);
-        if mean < MEAN_CHANGE_STEPS * step {
-            return None;
-        }
         // Of the sizes −2, −1, 0, 1 and 2 steps all are about as frequent.
         let chance = |sizes: &mut dyn Iterator<Item = f64>| -> f64 {
             let small = sizes
@@ -158,9 +153,8 @@ fn run(values: &[f64], start: usize, end: usize, changes: &Changes) -> Option<Ru
         let crossing = near <= CROSSING * changes.mean || (opposite && changes.step > 0.0);
         (changes.step > 0.0 && near <= gentle) || (lost.len() == 1 && crossing)
     } else {
-        let crest = (values[start - 1] < value) == (values[end] < value);
         let edge = value == changes.low || value == changes.high;
-        edge || out <= gentle || (changes.step > 0.0 && crest && !is_abrupt)
+        edge || out <= gentle
     };
     (!excluded).then_some(Run {
         lost,

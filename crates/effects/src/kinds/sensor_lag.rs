@@ -31,7 +31,7 @@ pub(super) struct Lag {
 /// b₁ of (2).
 fn end_weight(x: f64) -> f64 {
     if x < SMALL {
-        // 1 − (1 − e⁻ˣ)/x = x/2 − x²/6 + x³/24 − …; the next term is below 1e-15 of the first.
+        // 1 − (1 − e⁻ˣ)/x = x/2 − x²/6 + x³/24 − …; the next term is below 1e-13 of the first.
         x * (1.0 / 2.0 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x / 720.0))))
     } else {
         1.0 + (-x).exp_m1() / x
