@@ -125,6 +125,7 @@ pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, 
         let mut weakest: Option<Hypothesis> = None;
         for subset in smaller {
             let earns = set.evidence - subset.evidence > EARNS
+                && identified(&set, &subset)
                 && relevant(search.problem, &set.fit, &subset.fit)
                 && (set.effects().len() < 2 || confirmed(search, &set, &subset)?);
             if !earns
@@ -140,6 +141,24 @@ pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, 
             None => return Ok(set),
         }
     }
+}
+
+/// Whether the effect that a subset lacks has a size that can be told from none: one of its
+/// parameters that has a neutral value is surely away from it.
+fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
+    let kept = subset.key();
+    let effects = set.effects().iter().zip(&set.fit.intervals);
+    let mut lost = effects.filter(|(placed, _)| !kept.contains(&name(placed)));
+    lost.all(|(placed, intervals)| {
+        let parameters = placed.effect.parameters().iter().zip(intervals);
+        let mut sizes = parameters
+            .filter(|(parameter, _)| !parameter.per_record)
+            .filter_map(|(parameter, interval)| Some((parameter.neutral?, interval.ci95)))
+            .filter(|(neutral, _)| neutral.is_finite())
+            .peekable();
+        sizes.peek().is_none()
+            || sizes.any(|(neutral, [low, high])| neutral < low || neutral > high)
+    })
 }
 
 /// Whether the larger set predicts better what neither was fitted to: the last part of each run
