@@ -101,23 +101,35 @@ fn push<const N: usize>(blocks: &[Block<N>; 2], force: &[f64], next: &mut [f64])
 }
 
 /// Any number of degrees of freedom, none included.
-pub(super) struct Dense<'a>(pub(super) &'a ExactPropagator);
+pub(super) struct Dense<'a> {
+    propagator: &'a ExactPropagator,
+    held: Vec<f64>,
+}
+
+impl<'a> Dense<'a> {
+    pub(super) fn new(propagator: &'a ExactPropagator) -> Dense<'a> {
+        let ends = propagator.gamma0.iter().zip(&propagator.gamma1);
+        Dense {
+            propagator,
+            held: ends.map(|(a, b)| a + b).collect(),
+        }
+    }
+}
 
 impl Kernel for Dense<'_> {
     fn step(&self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]) {
         next.fill(0.0);
-        add_rows(&self.0.gamma0, before, next);
-        add_rows(&self.0.gamma1, after, next);
-        add_rows(&self.0.phi, state, next);
+        add_rows(&self.propagator.gamma0, before, next);
+        add_rows(&self.propagator.gamma1, after, next);
+        add_rows(&self.propagator.phi, state, next);
     }
 
     fn push_end(&self, force: &[f64], next: &mut [f64]) {
-        add_rows(&self.0.gamma1, force, next);
+        add_rows(&self.propagator.gamma1, force, next);
     }
 
     fn push_held(&self, force: &[f64], next: &mut [f64]) {
-        add_rows(&self.0.gamma0, force, next);
-        add_rows(&self.0.gamma1, force, next);
+        add_rows(&self.held, force, next);
     }
 }
 
@@ -126,7 +138,9 @@ fn add_rows(matrix: &[f64], vector: &[f64], sum: &mut [f64]) {
         return;
     }
     for (row, out) in matrix.chunks_exact(vector.len()).zip(sum) {
-        *out += row.iter().zip(vector).map(|(a, b)| a * b).sum::<f64>();
+        for (a, b) in row.iter().zip(vector) {
+            *out += a * b;
+        }
     }
 }
 
@@ -152,7 +166,7 @@ mod tests {
         };
         let propagator = ExactPropagator::new(&structure, 0.02);
         let propagator = propagator.expect("a regular structure");
-        let (fixed, dense) = (Fixed::<3>::new(&propagator), Dense(&propagator));
+        let (fixed, dense) = (Fixed::<3>::new(&propagator), Dense::new(&propagator));
         let state = [0.1, -0.2, 0.3, 1.0, -2.0, 0.5];
         let (f0, f1) = ([3.0, -1.0, 2.0], [0.5, 4.0, -2.0]);
         let (mut a, mut b) = ([0.0; 6], [0.0; 6]);

@@ -1,5 +1,9 @@
 //! What the propagation needs to know of a nonlinear force.
 
+use std::any::Any;
+
+use super::lanes::LaneLaw;
+
 /// Motion across a member, and when.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MemberMotion {
@@ -18,7 +22,7 @@ pub struct MemberMotion {
 ///
 /// A law has a single-valued part, and may have a dry part: a force of either sign up to a level,
 /// which holds the member still if it can (a set-valued force at zero velocity).
-pub trait ForceLaw: Send + Sync {
+pub trait ForceLaw: Any + Send + Sync {
     /// The single-valued part, N.
     fn force(&self, motion: MemberMotion) -> f64;
 
@@ -44,6 +48,13 @@ pub trait ForceLaw: Send + Sync {
     /// without a dry part.
     fn dry_level(&self, speed: f64) -> Option<f64> {
         let _ = speed;
+        None
+    }
+
+    /// The laws of eight parameter sets side by side, this one among them; `None` where that is not
+    /// offered or they are not of one type. See [`crate::lanes!`].
+    fn lanes(&self, peers: &[&dyn ForceLaw]) -> Option<Box<dyn LaneLaw>> {
+        let _ = peers;
         None
     }
 }

@@ -61,14 +61,14 @@ impl ExactPropagator {
     /// Acceleration at a sample, `M⁻¹ (f − C ẋ − K x)`, m/s², written to `acceleration`.
     pub fn acceleration(&self, at: &Snapshot<'_>, acceleration: &mut [f64]) {
         let n = self.dof_count;
-        for (i, out) in acceleration.iter_mut().enumerate().take(n) {
-            *out = 0.0;
-            for j in 0..n {
-                let mut net = at.dof_force[j];
-                for k in 0..n {
-                    net -= self.stiffness[j * n + k] * at.displacement[k]
-                        + self.damping[j * n + k] * at.velocity[k];
-                }
+        acceleration.fill(0.0);
+        for j in 0..n {
+            let mut net = at.dof_force[j];
+            for k in 0..n {
+                net -= self.stiffness[j * n + k] * at.displacement[k]
+                    + self.damping[j * n + k] * at.velocity[k];
+            }
+            for (i, out) in acceleration.iter_mut().enumerate().take(n) {
                 *out += self.inverse_mass[i * n + j] * net;
             }
         }
@@ -95,7 +95,7 @@ impl ExactPropagator {
             2 => plant.run(&Fixed::<2>::new(self), excitation, &mut state, observe),
             3 => plant.run(&Fixed::<3>::new(self), excitation, &mut state, observe),
             4 => plant.run(&Fixed::<4>::new(self), excitation, &mut state, observe),
-            _ => plant.run(&Dense(self), excitation, &mut state, observe),
+            _ => plant.run(&Dense::new(self), excitation, &mut state, observe),
         }
     }
 }
@@ -197,6 +197,10 @@ impl Plant<'_> {
 
 #[inline(always)]
 fn interpolate(from: &[f64], to: &[f64], share: f64, out: &mut [f64]) {
+    if share == 1.0 {
+        out.copy_from_slice(to);
+        return;
+    }
     for ((out, a), b) in out.iter_mut().zip(from).zip(to) {
         *out = a + share * (b - a);
     }

@@ -2,12 +2,14 @@
 
 mod expm;
 mod kernel;
+pub mod lanes;
 mod law;
 mod march;
 mod plant;
 mod propagator;
 
 pub use expm::matrix_exponential;
+pub use lanes::{LaneLaw, gather};
 pub use law::{Element, ForceLaw, MemberMotion};
 pub use march::{Excitation, Snapshot};
 pub use propagator::ExactPropagator;

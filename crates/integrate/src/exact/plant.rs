@@ -3,22 +3,22 @@
 use simgap_model::Node;
 
 use super::kernel::Kernel;
-use super::law::{Element, ForceLaw, MemberMotion};
+use super::law::{Element, MemberMotion};
 use super::propagator::ExactPropagator;
 
 /// Sweeps over several elements before the step is taken as it stands. Contraction per sweep is
 /// the coupling through the masses within one step, far below one.
-const SWEEPS: usize = 8;
+pub(super) const SWEEPS: usize = 8;
 /// Secant iterations on (3); smooth laws need two, a hard stop a few more.
-const SECANT_STEPS: usize = 12;
+pub(super) const SECANT_STEPS: usize = 12;
 /// Relative accuracy of the element forces, far below what the trapezoidal rule leaves.
-const FORCE_TOLERANCE: f64 = 1e-8;
+pub(super) const FORCE_TOLERANCE: f64 = 1e-8;
 
 /// A velocity below this share of what the step would bring without friction is rest.
-const AT_REST: f64 = 1e-9;
+pub(super) const AT_REST: f64 = 1e-9;
 
 /// How the forces of element j move element i within one step, E and Γ folded.
-struct Compliance {
+pub(super) struct Compliance {
     /// C: displacement of i per S of j.
     displacement: Vec<f64>,
     /// C: velocity of i per S of j.
@@ -29,26 +29,38 @@ struct Compliance {
     dry_velocity: Vec<f64>,
 }
 
+impl Compliance {
+    /// The four tables: displacement and velocity per S, then per D.
+    pub(super) fn parts(&self) -> [&[f64]; 4] {
+        [
+            &self.displacement,
+            &self.velocity,
+            &self.dry_displacement,
+            &self.dry_velocity,
+        ]
+    }
+}
+
 /// The elements on a propagator, and their forces.
 pub(super) struct Plant<'a> {
     pub(super) propagator: &'a ExactPropagator,
     pub(super) elements: &'a [Element],
-    compliance: Compliance,
-    dry: Vec<bool>,
+    pub(super) compliance: Compliance,
+    pub(super) dry: Vec<bool>,
     any_dry: bool,
     /// S of each element at the end of the last step.
     pub(super) smooth: Vec<f64>,
     /// D of each element over the last step.
-    dry_force: Vec<f64>,
+    pub(super) dry_force: Vec<f64>,
     /// D of each element at the end of the last step.
     pub(super) dry_end: Vec<f64>,
     /// Which elements remember, what, and where they were at the start of the step.
-    remembers: Vec<bool>,
-    memory: Vec<f64>,
-    from: Vec<MemberMotion>,
+    pub(super) remembers: Vec<bool>,
+    pub(super) memory: Vec<f64>,
+    pub(super) from: Vec<MemberMotion>,
     /// Velocity across each element at the two ends of the step.
     start_velocity: Vec<f64>,
-    end_velocity: Vec<f64>,
+    pub(super) end_velocity: Vec<f64>,
     free_displacement: Vec<f64>,
     free_velocity: Vec<f64>,
 }
@@ -247,12 +259,9 @@ impl<'a> Plant<'a> {
         if self.dry[i] {
             let free_velocity = velocity - c.velocity[own] * self.smooth[i];
             let compliance = c.dry_velocity[own];
-            let dry = dry_force(
-                law.as_ref(),
-                self.start_velocity[i],
-                free_velocity,
-                compliance,
-            );
+            let start = self.start_velocity[i];
+            let level = |speed: f64| law.dry_level(speed).unwrap_or(0.0);
+            let dry = dry_force(level, start, free_velocity, compliance);
             (self.dry_force[i], self.dry_end[i]) = (dry.mean, dry.end);
             displacement -= c.dry_displacement[own] * self.dry_force[i];
             velocity -= c.dry_velocity[own] * self.dry_force[i];
@@ -293,11 +302,12 @@ impl<'a> Plant<'a> {
 }
 
 /// The dry force over a step.
-struct Dry {
+#[derive(Clone, Copy)]
+pub(super) struct Dry {
     /// Its mean, which moves the plant.
-    mean: f64,
+    pub(super) mean: f64,
     /// Its value at the end of the step.
-    end: f64,
+    pub(super) end: f64,
 }
 
 /// (4): the dry force over a step that starts at the velocity `start` and would end at `free`
@@ -310,68 +320,54 @@ struct Dry {
 /// v_A = v* − G F sgn v₀,   θ = v₀ / (v₀ − v_A)
 /// mean = F sgn(v₀) (2θ − 1)  when the other forces exceed the friction at rest, else v* / G
 /// ```
+///
+/// `level` is the friction at a speed. Every case is computed and one chosen, so that the lanes of
+/// [`super::lanes`] can take different ones.
 #[inline(always)]
-fn dry_force(law: &dyn ForceLaw, start: f64, free: f64, compliance: f64) -> Dry {
-    let level = |speed: f64| law.dry_level(speed).unwrap_or(0.0).max(0.0);
-    let sign = |velocity: f64| {
-        if velocity == 0.0 {
-            0.0
-        } else {
-            velocity.signum()
-        }
-    };
+pub(super) fn dry_force(level: impl Fn(f64) -> f64, start: f64, free: f64, compliance: f64) -> Dry {
+    let level = |speed: f64| level(speed).max(0.0);
+    let sign = |velocity: f64| choose(velocity == 0.0, 0.0, 1.0_f64.copysign(velocity));
     let at_rest = level(0.0);
-    if compliance <= 0.0 {
-        // A prescribed motion does not mind.
-        let force = level(free.abs()) * sign(free);
-        return Dry {
-            mean: force,
-            end: force,
-        };
+    let holds = compliance * at_rest;
+    let rests = start == 0.0;
+    let stuck = free / compliance;
+    // Sliding one way: |v| = s v* − G F(|v|), by fixed-point iteration (levels change little in a
+    // step).
+    let way = sign(choose(rests, free, start));
+    let mut speed = way * free;
+    for _ in 0..3 {
+        speed = (way * free - compliance * level(speed.max(0.0))).max(0.0);
     }
-    let stuck = Dry {
-        mean: free / compliance,
-        end: free / compliance,
-    };
-    if start == 0.0 {
-        if free.abs() <= compliance * at_rest {
-            return stuck;
-        }
-        return sliding(level, sign(free), free, compliance);
-    }
-    let before = sign(start);
-    let slid = sliding(level, before, free, compliance);
-    let ahead = free - compliance * slid.mean;
-    if ahead * before >= 0.0 {
-        return slid;
-    }
-    if (free - start).abs() <= compliance * at_rest {
-        // Once stopped, it holds against the other forces; the mean also brakes what was moving.
-        return Dry {
-            mean: stuck.mean,
-            end: (free - start) / compliance,
-        };
-    }
+    let slid = way * level(speed);
+    let ahead = free - compliance * slid;
+    // A sliding member that turns: what stopped holds against the other forces, and the mean also
+    // brakes what was moving; or it slides on the other way.
     let share = start / (start - ahead);
-    let force = level(0.5 * (start.abs() + ahead.abs()));
+    let turned = level(0.5 * (start.abs() + ahead.abs())) * way * (2.0 * share - 1.0);
+    let turned_end = -way * level(ahead.abs());
+    // A prescribed motion does not mind.
+    let carried = level(free.abs()) * sign(free);
+
+    let prescribed = compliance <= 0.0;
+    let slides = choose_if(rests, free.abs() > holds, ahead * way >= 0.0);
+    let stops = rests | ((free - start).abs() <= holds);
+    let mean = choose(slides, slid, choose(stops, stuck, turned));
+    let stopped_end = choose(rests, stuck, (free - start) / compliance);
+    let end = choose(slides, slid, choose(stops, stopped_end, turned_end));
     Dry {
-        mean: force * before * (2.0 * share - 1.0),
-        end: -before * level(ahead.abs()),
+        mean: choose(prescribed, carried, mean),
+        end: choose(prescribed, carried, end),
     }
 }
 
-/// Sliding one way: |v| = s v* − G F(|v|), by fixed-point iteration (levels change little in a step).
 #[inline(always)]
-fn sliding(level: impl Fn(f64) -> f64, sign: f64, free: f64, compliance: f64) -> Dry {
-    let mut speed = sign * free;
-    for _ in 0..3 {
-        speed = (sign * free - compliance * level(speed.max(0.0))).max(0.0);
-    }
-    let force = sign * level(speed);
-    Dry {
-        mean: force,
-        end: force,
-    }
+fn choose(condition: bool, yes: f64, no: f64) -> f64 {
+    if condition { yes } else { no }
+}
+
+#[inline(always)]
+fn choose_if(condition: bool, yes: bool, no: bool) -> bool {
+    (condition & yes) | (!condition & no)
 }
 
 /// (3): solves S = φ(S) from a first guess by the secant method.

@@ -1,0 +1,198 @@
+//! A force law in eight lanes.
+
+use std::any::Any;
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::solve::{self, LawLanes};
+use super::{LANES, Mask, Pack};
+use crate::exact::law::{ForceLaw, MemberMotion};
+
+/// One law with the parameters of eight sets. Made by [`gather`], or lane by lane for laws that
+/// do not offer [`ForceLaw::lanes`].
+pub trait LaneLaw: Send + Sync {
+    /// Solves one element for the end of a step, the others held.
+    fn solve(&self, arch: Arch, element: &mut ElementLanes);
+
+    /// Commits the memory at the end of a step.
+    fn remember(&self, arch: Arch, element: &mut ElementLanes);
+}
+
+/// One element of eight sets within one step.
+#[derive(Debug, Clone)]
+pub struct ElementLanes {
+    pub(super) dry: bool,
+    pub(super) remembers: bool,
+    /// Motion at the end of the step without the forces of the element itself.
+    pub(super) displacement: Pack,
+    pub(super) velocity: Pack,
+    pub(super) time_s: Pack,
+    /// What a unit of its forces takes from displacement and velocity.
+    pub(super) compliance: [Pack; 2],
+    pub(super) dry_compliance: [Pack; 2],
+    pub(super) start_velocity: Pack,
+    /// Velocity at the end of the step without the forces of any element.
+    pub(super) free_velocity: Pack,
+    pub(super) end_velocity: Pack,
+    pub(super) smooth: Pack,
+    pub(super) dry_force: Pack,
+    pub(super) dry_end: Pack,
+    pub(super) memory: Pack,
+    /// Displacement, velocity and time at the start of the step, for a law that remembers.
+    pub(super) from: [Pack; 3],
+    /// Sets that still iterate; afterwards those whose forces changed.
+    pub(super) open: Mask,
+}
+
+/// The parameters of eight laws of one type, and how they become a law again.
+struct Gathered<F, const K: usize> {
+    columns: [Pack; K],
+    join: F,
+}
+
+/// Puts the laws of eight sets side by side, if all are of the type of the first: `split` and
+/// `join` take a law into its numbers and back. A law calls it through [`crate::lanes!`].
+pub fn gather<L: ForceLaw, const K: usize>(
+    peers: &[&dyn ForceLaw],
+    split: impl Fn(&L) -> [f64; K],
+    join: impl Fn([f64; K]) -> L + Send + Sync + 'static,
+) -> Option<Box<dyn LaneLaw>> {
+    let mut columns = [Pack::ZERO; K];
+    for lane in 0..LANES {
+        let law: &dyn Any = *peers.get(lane)?;
+        for (column, value) in columns.iter_mut().zip(split(law.downcast_ref::<L>()?)) {
+            column.0[lane] = value;
+        }
+    }
+    Some(Box::new(Gathered { columns, join }))
+}
+
+impl<L: ForceLaw, F: Fn([f64; K]) -> L, const K: usize> Gathered<F, K> {
+    #[inline(always)]
+    fn law(&self, lane: usize) -> L {
+        (self.join)(std::array::from_fn(|k| self.columns[k].0[lane]))
+    }
+}
+
+impl<L: ForceLaw, F: Fn([f64; K]) -> L, const K: usize> LawLanes for Gathered<F, K> {
+    #[inline(always)]
+    fn force(&self, lane: usize, motion: MemberMotion) -> f64 {
+        self.law(lane).force(motion)
+    }
+
+    #[inline(always)]
+    fn follow(&self, lane: usize, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+        self.law(lane).follow(memory, from, to)
+    }
+
+    #[inline(always)]
+    fn dry_level(&self, lane: usize, speed: f64) -> f64 {
+        self.law(lane).dry_level(speed).unwrap_or(0.0)
+    }
+}
+
+impl<L, F, const K: usize> LaneLaw for Gathered<F, K>
+where
+    L: ForceLaw,
+    F: Fn([f64; K]) -> L + Send + Sync,
+{
+    fn solve(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Solve(self, element));
+    }
+
+    fn remember(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Remember(self, element));
+    }
+}
+
+/// [`solve::solve`] in the best instructions there are; a closure would not be inlined into them.
+struct Solve<'a, L>(&'a L, &'a mut ElementLanes);
+
+impl<L: LawLanes> WithSimd for Solve<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        solve::solve(self.0, self.1);
+    }
+}
+
+/// [`solve::remember`] likewise.
+struct Remember<'a, L>(&'a L, &'a mut ElementLanes);
+
+impl<L: LawLanes> WithSimd for Remember<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        solve::remember(self.0, self.1);
+    }
+}
+
+/// Laws that are asked one after the other.
+pub(super) struct OneByOne<'a>(pub(super) [&'a dyn ForceLaw; LANES]);
+
+impl LawLanes for OneByOne<'_> {
+    #[inline(always)]
+    fn force(&self, lane: usize, motion: MemberMotion) -> f64 {
+        self.0[lane].force(motion)
+    }
+
+    #[inline(always)]
+    fn follow(&self, lane: usize, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+        self.0[lane].follow(memory, from, to)
+    }
+
+    #[inline(always)]
+    fn dry_level(&self, lane: usize, speed: f64) -> f64 {
+        self.0[lane].dry_level(speed).unwrap_or(0.0)
+    }
+}
+
+impl LaneLaw for OneByOne<'_> {
+    fn solve(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Solve(self, element));
+    }
+
+    fn remember(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Remember(self, element));
+    }
+}
+
+/// Lets a force law run in lanes: inside its `impl ForceLaw`, with the names of all its fields,
+/// each an `f64`.
+///
+/// ```
+/// use simgap_integrate::exact::{ForceLaw, MemberMotion};
+///
+/// struct Cubic {
+///     factor: f64,
+/// }
+///
+/// impl ForceLaw for Cubic {
+///     simgap_integrate::lanes!(factor);
+///
+///     fn force(&self, motion: MemberMotion) -> f64 {
+///         self.factor * motion.displacement * motion.displacement * motion.displacement
+///     }
+/// }
+///
+/// let law = Cubic { factor: 2.0 };
+/// let eight: [&dyn ForceLaw; 8] = [&law; 8];
+/// assert!(law.lanes(&eight).is_some());
+/// ```
+#[macro_export]
+macro_rules! lanes {
+    ($($field:ident),* $(,)?) => {
+        fn lanes(
+            &self,
+            peers: &[&dyn $crate::exact::ForceLaw],
+        ) -> Option<Box<dyn $crate::exact::LaneLaw>> {
+            $crate::exact::gather(
+                peers,
+                |law: &Self| [$(law.$field),*],
+                |[$($field),*]| Self { $($field),* },
+            )
+        }
+    };
+}

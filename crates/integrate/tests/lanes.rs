@@ -1,0 +1,267 @@
+//! Eight sets in lanes give what each gives alone, to the last bit.
+#![allow(clippy::unwrap_used)]
+
+use proptest::prelude::*;
+use simgap_integrate::exact::lanes::{Batch, LaneObserver, LaneSet, LaneSnapshot};
+use simgap_integrate::exact::{
+    Element, ExactPropagator, Excitation, ForceLaw, MemberMotion, Snapshot,
+};
+use simgap_model::{Node, StructuralMatrices};
+
+/// Stiffening spring with a damper that depends on the speed.
+struct Cubic {
+    cubic: f64,
+    quadratic: f64,
+}
+
+impl ForceLaw for Cubic {
+    simgap_integrate::lanes!(cubic, quadratic);
+
+    fn force(&self, at: MemberMotion) -> f64 {
+        self.cubic * at.displacement.powi(3) + self.quadratic * at.velocity.abs() * at.velocity
+    }
+}
+
+/// Friction with a level that falls with the speed.
+struct Dry {
+    level: f64,
+    excess: f64,
+}
+
+impl ForceLaw for Dry {
+    simgap_integrate::lanes!(level, excess);
+
+    fn force(&self, _: MemberMotion) -> f64 {
+        0.0
+    }
+
+    fn dry_level(&self, speed: f64) -> Option<f64> {
+        Some(self.level + self.excess / (1.0 + 100.0 * speed * speed))
+    }
+}
+
+/// A spring that slips at a force; with a clock besides.
+struct Slip {
+    stiffness: f64,
+    limit: f64,
+}
+
+impl ForceLaw for Slip {
+    simgap_integrate::lanes!(stiffness, limit);
+
+    fn force(&self, _: MemberMotion) -> f64 {
+        0.0
+    }
+
+    fn remembers(&self) -> bool {
+        true
+    }
+
+    fn first_memory(&self) -> f64 {
+        0.1 * self.limit
+    }
+
+    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+        let force = memory + self.stiffness * (to.displacement - from.displacement);
+        let force = force.max(-self.limit).min(self.limit);
+        (force + 0.01 * self.limit * to.time_s, force)
+    }
+}
+
+/// As [`Cubic`] without lanes of its own.
+struct Alone(Cubic);
+
+impl ForceLaw for Alone {
+    fn force(&self, at: MemberMotion) -> f64 {
+        self.0.force(at)
+    }
+}
+
+/// One parameter set with what it needs to be marched.
+struct Set {
+    propagator: ExactPropagator,
+    elements: Vec<Element>,
+    force: Vec<f64>,
+    base: [Vec<f64>; 2],
+    start: [Vec<f64>; 2],
+    start_s: f64,
+}
+
+const STEP_S: f64 = 0.02;
+
+/// A chain of `n` masses between a moving base and the ground, laws as the digits of `laws` say.
+fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], samples: usize) -> Set {
+    let number = |i: usize| numbers[i % numbers.len()];
+    let chain = |value: f64| {
+        faer::Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
+            0 => 2.0 * value * (1.0 + 0.1 * number(i)),
+            1 => -value,
+            _ => 0.0,
+        })
+    };
+    let structure = StructuralMatrices {
+        mass_matrix: faer::Mat::from_fn(n, n, |i, j| {
+            if i == j {
+                1.0 + 0.3 * number(i + 1).abs()
+            } else {
+                0.0
+            }
+        }),
+        damping_matrix: chain(0.6),
+        stiffness_matrix: chain(150.0),
+    };
+    let elements = laws.iter().enumerate().map(|(i, kind)| {
+        let (a, b) = match i % 3 {
+            0 => (Node::Dof(i % n), Node::Ground),
+            1 => (Node::Dof(0), Node::Base(0)),
+            _ => (Node::Dof(i % n), Node::Dof((i + 1) % n)),
+        };
+        let size = 1.0 + 0.5 * number(i + 2);
+        let cubic = Cubic {
+            cubic: 2e3 * size,
+            quadratic: 3.0 * size,
+        };
+        let law: Box<dyn ForceLaw> = match kind {
+            0 => Box::new(cubic),
+            1 => Box::new(Dry {
+                level: 2.0 * size,
+                excess: size,
+            }),
+            2 => Box::new(Slip {
+                stiffness: 60.0 * size,
+                limit: 3.0 * size,
+            }),
+            _ => Box::new(Alone(cubic)),
+        };
+        Element { a, b, law }
+    });
+    let wave = |k: usize, w: f64| (w * k as f64 * STEP_S + number(3)).sin();
+    Set {
+        propagator: ExactPropagator::new(&structure, STEP_S / substeps as f64).unwrap(),
+        elements: elements.collect(),
+        force: (0..samples * n)
+            .map(|k| 9.0 * wave(k / n, 7.0 + (k % n) as f64))
+            .collect(),
+        base: [
+            (0..samples).map(|k| 0.02 * wave(k, 5.0)).collect(),
+            (0..samples).map(|k| 0.1 * wave(k, 4.0)).collect(),
+        ],
+        start: [
+            (0..n).map(|i| 0.02 * number(i)).collect(),
+            (0..n).map(|i| 0.3 * number(i + 4)).collect(),
+        ],
+        start_s: number(5),
+    }
+}
+
+impl Set {
+    fn excitation(&self, substeps: usize) -> Excitation<'_> {
+        Excitation {
+            dof_force: &self.force,
+            base_displacement: &self.base[0],
+            base_velocity: &self.base[1],
+            base_count: 1,
+            sample_count: self.base[0].len(),
+            start_s: self.start_s,
+            substeps,
+        }
+    }
+
+    fn lanes(&self, substeps: usize) -> LaneSet<'_> {
+        LaneSet {
+            propagator: &self.propagator,
+            elements: &self.elements,
+            excitation: self.excitation(substeps),
+            displacement: &self.start[0],
+            velocity: &self.start[1],
+        }
+    }
+
+    /// Every number of every sample, set by set.
+    fn alone(&self, substeps: usize) -> Vec<f64> {
+        let mut path = Vec::new();
+        let mut acceleration = vec![0.0; self.start[0].len()];
+        self.propagator.march(
+            &self.elements,
+            &self.excitation(substeps),
+            &self.start[0],
+            &self.start[1],
+            &mut |at: &Snapshot<'_>| {
+                self.propagator.acceleration(at, &mut acceleration);
+                for part in [
+                    at.displacement,
+                    at.velocity,
+                    at.dof_force,
+                    at.element_force,
+                    &acceleration,
+                ] {
+                    path.extend_from_slice(part);
+                }
+            },
+        );
+        path
+    }
+}
+
+/// Collects the same from a batch.
+struct Paths(Vec<Vec<f64>>, Vec<usize>);
+
+impl LaneObserver for Paths {
+    fn needs_acceleration(&self) -> bool {
+        true
+    }
+
+    fn observe(&mut self, at: &LaneSnapshot<'_>) {
+        for lane in 0..at.set_count {
+            let set = at.first_set + lane;
+            if at.sample >= self.1[set] {
+                continue;
+            }
+            for part in [
+                at.displacement,
+                at.velocity,
+                at.dof_force,
+                at.element_force,
+                at.acceleration,
+            ] {
+                self.0[set].extend(part.iter().map(|pack| pack.0[lane]));
+            }
+        }
+    }
+}
+
+fn together(sets: &[Set], substeps: usize) -> Vec<Vec<f64>> {
+    let lanes = sets.iter().map(|set| set.lanes(substeps)).collect();
+    let counts = sets.iter().map(|set| set.base[0].len()).collect();
+    let mut paths = Paths(vec![vec![]; sets.len()], counts);
+    Batch::new(lanes).unwrap().march(&mut paths);
+    paths.0
+}
+
+fn bits(path: &[f64]) -> Vec<u64> {
+    path.iter().map(|value| value.to_bits()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// Batches of any size, with any neighbours and lengths, against one set at a time.
+    #[test]
+    fn prop_lanes_are_the_sets_to_the_last_bit(
+        n in 1_usize..6,
+        laws in proptest::collection::vec(0_u8..4, 0..4),
+        substeps in 1_usize..4,
+        numbers in proptest::collection::vec(
+            (proptest::collection::vec(-1.0_f64..1.0, 7), 1_usize..60), 1..20),
+    ) {
+        let sets: Vec<Set> = numbers
+            .iter()
+            .map(|(numbers, samples)| set(n, &laws, substeps, numbers, *samples))
+            .collect();
+        for (lanes, set) in together(&sets, substeps).iter().zip(&sets) {
+            let alone = set.alone(substeps);
+            prop_assert!(alone.iter().all(|value| value.is_finite()));
+            prop_assert_eq!(bits(lanes), bits(&alone));
+        }
+    }
+}
