@@ -137,17 +137,26 @@ fn rivals(answer: &Answer, judged: &Judged) -> Vec<Rival> {
     let mut rivals: Vec<Rival> = Vec::new();
     for swap in &judged.swaps {
         let behind = answer.set.evidence - swap.evidence;
-        if behind >= INDISTINGUISHABLE {
+        let as_likely = behind < INDISTINGUISHABLE;
+        // A clock that ticks in step with the motion: no data at this rate can tell, whatever the
+        // number of its parameters says.
+        let same_line = swap.placed.effect.clock().is_some() && swap.misfit < INDISTINGUISHABLE;
+        if !(as_likely || same_line) {
             continue;
         }
         rivals.push(Rival {
             kind: swap.placed.effect.kind().to_string(),
             at: swap.placed.at.clone(),
-            because: format!(
+            because: if !as_likely {
+                format!(
+                    "at this sample rate its line is where {} leaves one of this motion, and it fits as well",
+                    judged.placed.effect.kind()
+                )
+            } else { format!(
                 "in its place it fits the training records as well (log evidence {} by {:.1}, needed to tell them apart is {INDISTINGUISHABLE:.0})",
                 if behind >= 0.0 { "lower" } else { "higher" },
                 behind.abs()
-            ),
+            ) },
         });
     }
     rivals

@@ -42,6 +42,8 @@ pub(crate) struct Swap {
     pub(crate) placed: Placed,
     /// Evidence of the set with it.
     pub(crate) evidence: f64,
+    /// How much worse the set with it fits, its number of parameters aside.
+    pub(crate) misfit: f64,
 }
 
 /// One effect of the answer with its rivals.
@@ -274,6 +276,7 @@ fn judge_once(
                 // A rival that is the set with another start has nothing to put in its place.
                 placed: replacement(set, rival).unwrap_or(&set.effects()[i]).clone(),
                 evidence: rival.evidence,
+                misfit: rival.fit.objective - set.fit.objective,
             })
             .collect();
         list.push(Judged {
