@@ -19,8 +19,12 @@ use crate::{DiagnoseError, answer, locate};
 const RECALIBRATION_PRIOR: f64 = 0.5;
 /// A fit of the search stops when a step gains less than this: rivals are told apart by more.
 const SEARCH_CONVERGED: f64 = 0.1;
+/// Steps of a fit of the search: it stops in a flat valley, a final fit does not.
+const SEARCH_STEPS: usize = 10;
 /// Sets that are fitted again once the colour of the residual is known.
 const FINALISTS: usize = 6;
+/// Single effects that are fitted again.
+const SINGLES: usize = 12;
 /// Rivals fitted for each named effect.
 const RIVALS: usize = 8;
 
@@ -124,7 +128,10 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     } else {
         (gap, placed, 2)
     };
-    let candidates = answer::candidates(&check, &answer, &verdict, &plain)?;
+    let candidates = {
+        let short = check.with_runs(excerpts(&check.runs));
+        answer::candidates(&short, &answer, &verdict, &plain)?
+    };
     let places = locate_places(request.model);
     let r#where = Where {
         channels: locate::channels(&check, &predictions[0]),
@@ -198,6 +205,7 @@ fn search(
         independence: independence(fit, channels),
         converged: SEARCH_CONVERGED,
         keep_nuisance: true,
+        most_steps: SEARCH_STEPS,
         ..Weights::independent(channels)
     };
     let short = train.with_runs(excerpts(&train.runs));
@@ -229,6 +237,7 @@ fn search(
     let singles: Vec<Hypothesis> = pool
         .into_iter()
         .filter(|set| set.effects().len() == 1)
+        .take(SINGLES)
         .collect();
     let singles = again(&singles)?;
 
@@ -259,6 +268,7 @@ fn search(
     let weights = Weights {
         converged: plain.converged,
         keep_nuisance: false,
+        most_steps: plain.most_steps,
         ..search.weights.clone()
     };
     let estimate = fit(train, &start, &weights)?;

@@ -20,6 +20,11 @@ use crate::evidence::{effective_samples, evidence, freedom};
 const SURVIVORS: [usize; 2] = [5, 3];
 /// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
 const FITTED: [usize; 3] = [18, 6, 4];
+/// Steps of a rough fit, and of one of the search that is finished.
+const ROUGH_STEPS: usize = 3;
+const MOST_STEPS: usize = 10;
+/// Sets that are finished of those fitted roughly.
+const FINISHED: usize = 12;
 /// Prior of [`Weights::independent`] on nominal parameters.
 const NOMINAL_PRIOR: f64 = 0.04;
 /// A squared discrepancy within this factor of white noise leaves no room for a relevant effect; the
@@ -205,11 +210,37 @@ impl<'a> Search<'a> {
     }
 
     /// Fits sets; of the same set from several starts the best stays. Best first.
+    ///
+    /// Many sets are first fitted roughly; only the best of them are worth the whole way.
     fn fit_all(&self, starts: &[Start], base: &Base<'_>) -> Result<Vec<Hypothesis>, EstimateError> {
+        if starts.len() <= FINISHED {
+            return self.fit_steps(starts, base, MOST_STEPS);
+        }
+        let mut rough = self.fit_steps(starts, base, ROUGH_STEPS)?;
+        let rest = rough.split_off(rough.len().min(FINISHED));
+        let promising: Vec<Start> = rough.iter().map(|set| set.fit.estimate.clone()).collect();
+        let mut fitted = self.fit_steps(&promising, base, MOST_STEPS)?;
+        fitted.extend(rough);
+        fitted.extend(rest);
+        sort(&mut fitted);
+        unique(&mut fitted);
+        Ok(fitted)
+    }
+
+    fn fit_steps(
+        &self,
+        starts: &[Start],
+        base: &Base<'_>,
+        most_steps: usize,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        let weights = Weights {
+            most_steps,
+            ..self.weights.clone()
+        };
         let mut fitted = starts
             .par_iter()
             // A start from which the plant runs away is no hypothesis.
-            .filter_map(|start| Some(self.hypothesis(base.fit(start, &self.weights).ok()?)))
+            .filter_map(|start| Some(self.hypothesis(base.fit(start, &weights).ok()?)))
             .collect::<Vec<_>>();
         fitted.retain(|hypothesis| hypothesis.fit.objective.is_finite());
         sort(&mut fitted);

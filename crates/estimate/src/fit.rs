@@ -46,9 +46,6 @@ pub struct Fit {
 
 /// Two-sided 95 % point of the normal distribution.
 const NORMAL_95: f64 = 1.959_964;
-const MOST_ITERATIONS: usize = 25;
-/// The same while the nuisance is kept: a search stops in a flat valley, a final fit does not.
-const MOST_KEPT_ITERATIONS: usize = 10;
 /// λ of (4) at the start, and how often it is raised before a step is given up.
 const FIRST_DAMPING: f64 = 1e-4;
 const MOST_DAMPINGS: usize = 8;
@@ -93,12 +90,7 @@ pub(crate) fn fit_with(
     let mut exact = !weights.keep_nuisance;
     let mut damping = FIRST_DAMPING;
     let mut iterations = 0;
-    let most = if weights.keep_nuisance {
-        MOST_KEPT_ITERATIONS
-    } else {
-        MOST_ITERATIONS
-    };
-    while iterations < most {
+    while iterations < weights.most_steps {
         iterations += 1;
         let search = Line {
             problem,

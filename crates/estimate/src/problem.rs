@@ -35,7 +35,12 @@ pub struct Weights {
     /// Keep the sensitivities of nominal parameters and initial states from step to step as long
     /// as the steps succeed: several times faster, with rougher intervals.
     pub keep_nuisance: bool,
+    /// Steps after which a fit is left where it is, however well it still goes.
+    pub most_steps: usize,
 }
+
+/// Steps of a fit that is to be finished.
+const MOST_STEPS: usize = 25;
 
 impl Weights {
     /// Every sample independent, nominal parameters known to 4 %.
@@ -47,6 +52,7 @@ impl Weights {
             nominal_prior: 0.04,
             converged: 0.02,
             keep_nuisance: false,
+            most_steps: MOST_STEPS,
         }
     }
 }

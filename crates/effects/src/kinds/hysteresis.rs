@@ -11,6 +11,7 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// dz/dd = 1 − (β sgn(z ḋ) + γ) |z / u_y|ⁿ,   γ = 1 − β                              (1)
 /// ```
 ///
+/// For n that is not whole, |z|ⁿ stands for what is linear in n between the whole numbers beside it.
 /// With β + γ = 1 the force levels off at k u_y. In the usual letters, ż = A ḋ − β′ |ḋ| |z|ⁿ⁻¹ z −
 /// γ′ ḋ |z|ⁿ, the yield displacement is (A / (β′ + γ′))^(1/n).
 ///
@@ -38,15 +39,17 @@ impl Law {
     }
 }
 
-/// |z|ⁿ, without a logarithm for the usual exponents.
+/// |z|ⁿ for a whole n up to 4; between whole numbers linear in n, which costs no logarithm.
 fn power(size: f64, exponent: f64) -> f64 {
-    if exponent == 1.0 {
-        size
-    } else if exponent == 2.0 {
-        size * size
+    let square = size * size;
+    let (below, share) = if exponent < 2.0 {
+        (size, exponent - 1.0)
+    } else if exponent < 3.0 {
+        (square, exponent - 2.0)
     } else {
-        size.powf(exponent)
-    }
+        (square * size, exponent - 3.0)
+    };
+    below * (1.0 - share + share * size)
 }
 
 impl ForceLaw for Law {
@@ -110,7 +113,7 @@ impl Effect for Hysteresis {
                 Parameter::size("hysteretic_stiffness_n_per_m", "N/m", 0.0, f64::INFINITY),
                 Parameter::shape("yield_displacement_m", "m", 0.0, f64::INFINITY),
                 Parameter::shape("loop_share", "1", 0.05, 1.0),
-                Parameter::shape("exponent", "1", 1.0, 6.0),
+                Parameter::shape("exponent", "1", 1.0, 4.0),
                 Parameter::size("start_share", "1", -1.0, 1.0).of_record(),
             ]
         }
