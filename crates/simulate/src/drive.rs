@@ -15,7 +15,43 @@ pub(crate) struct Drive {
     pub(crate) base_count: usize,
 }
 
+/// What a drive depends on: two simulators with the same key have the same drive.
+#[derive(PartialEq)]
+pub(crate) struct DriveKey<'a> {
+    /// Runs are told apart by where they are.
+    run: *const Run,
+    input_effects: &'a [(&'static str, Vec<f64>)],
+    mapped_inputs: Vec<usize>,
+    input_nodes: Vec<Option<Node>>,
+    loads: &'a [f64],
+    couplings: Vec<Coupling>,
+}
+
+/// A spring or damper between a mass and a moving base.
+#[derive(Clone, Copy, PartialEq)]
+struct Coupling {
+    dof: usize,
+    base: usize,
+    /// Zero: to the displacement; one: to the velocity.
+    order: usize,
+    coefficient: f64,
+}
+
 impl Simulator {
+    pub(crate) fn drive_key<'a>(&'a self, run: &Run) -> Result<DriveKey<'a>, SimulateError> {
+        Ok(DriveKey {
+            run,
+            input_effects: &self.input_effects,
+            mapped_inputs: self.input_maps.iter().map(|(input, _)| *input).collect(),
+            input_nodes: {
+                let inputs = self.model.inputs.iter();
+                inputs.map(|input| self.model.node(&input.at)).collect()
+            },
+            loads: &self.loads,
+            couplings: self.couplings()?,
+        })
+    }
+
     /// Forces on the masses and motion of the bases, sample by sample.
     pub(crate) fn drive(&self, run: &Run) -> Result<Drive, SimulateError> {
         let n = self.model.dof_count();
@@ -69,17 +105,17 @@ impl Simulator {
         drive.base_displacement = interleave(0);
         drive.base_velocity = interleave(1);
         drive.base_acceleration = interleave(2);
-        self.couple_bases(&motion, &mut drive.dof_force, n)?;
+        for coupling in self.couplings()? {
+            let motion = &motion[coupling.base][coupling.order];
+            for (sample, value) in motion.iter().enumerate() {
+                drive.dof_force[sample * n + coupling.dof] += coupling.coefficient * value;
+            }
+        }
         Ok(drive)
     }
 
-    /// Adds what springs and dampers to moving bases do to the masses: k b + c ḃ.
-    fn couple_bases(
-        &self,
-        motion: &[[Vec<f64>; 3]],
-        dof_force: &mut [f64],
-        n: usize,
-    ) -> Result<(), SimulateError> {
+    /// Springs and dampers to moving bases: they do k b + c ḃ to the masses.
+    fn couplings(&self) -> Result<Vec<Coupling>, SimulateError> {
         let springs = self
             .model
             .springs
@@ -90,15 +126,19 @@ impl Simulator {
             .dampers
             .iter()
             .map(|d| (&d.between, 1, d.damping));
+        let mut couplings = Vec::new();
         for (between, order, coefficient) in springs.chain(dampers) {
             let pair = self.model.resolve_pair(between, || "member".into())?;
             if let [Node::Dof(dof), Node::Base(base)] | [Node::Base(base), Node::Dof(dof)] = pair {
-                for (sample, value) in motion[base][order].iter().enumerate() {
-                    dof_force[sample * n + dof] += coefficient * value;
-                }
+                couplings.push(Coupling {
+                    dof,
+                    base,
+                    order,
+                    coefficient,
+                });
             }
         }
-        Ok(())
+        Ok(couplings)
     }
 }
 

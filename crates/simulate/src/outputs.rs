@@ -1,15 +1,18 @@
 //! From the state of the plant to the outputs of the model.
 
+use simgap_integrate::exact::lanes::{LANES, LaneSnapshot, Pack};
 use simgap_integrate::exact::{Element, Snapshot};
 use simgap_model::{Model, ModelError, Node, OutputKind, same_pair};
+
+use crate::prepare::Prepared;
 
 /// How one output is read off a sample.
 pub(crate) struct OutputPlan {
     kind: OutputKind,
     a: Node,
     b: Node,
-    stiffness: f64,
-    damping: f64,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
     /// Elements between a and b, with the sign of their orientation.
     elements: Vec<(usize, f64)>,
 }
@@ -31,7 +34,64 @@ pub(crate) fn across([a, b]: [Node; 2], dofs: &[f64], bases: &[f64]) -> f64 {
     value(a) - value(b)
 }
 
+/// Where the base nodes of eight sets are at one sample.
+pub(crate) struct LaneBase<'a> {
+    pub(crate) sample: usize,
+    pub(crate) ready: &'a [&'a Prepared; LANES],
+}
+
+impl LaneBase<'_> {
+    fn acceleration(&self, node: usize) -> Pack {
+        Pack::of(|l| {
+            let drive = &self.ready[l].drive;
+            let at = self.sample * drive.base_count + node;
+            drive.base_acceleration.get(at).copied().unwrap_or(0.0)
+        })
+    }
+}
+
 impl OutputPlan {
+    /// Whether two outputs are read off alike, from members of other values.
+    pub(crate) fn is_alike(&self, other: &OutputPlan) -> bool {
+        (self.kind, self.a, self.b) == (other.kind, other.a, other.b)
+            && self.elements == other.elements
+    }
+
+    /// As [`OutputPlan::read`] for eight sets, whose members have these stiffnesses and dampings.
+    #[inline(always)]
+    pub(crate) fn read_lanes(
+        &self,
+        at: &LaneSnapshot<'_>,
+        base: &LaneBase<'_>,
+        [stiffness, damping]: &[Pack; 2],
+    ) -> Pack {
+        let across = |dofs: &[Pack], of_base: &dyn Fn(usize) -> Pack| {
+            let value = |node| match node {
+                Node::Ground => Pack::ZERO,
+                Node::Dof(i) => dofs[i],
+                Node::Base(i) => of_base(i),
+            };
+            let (a, b) = (value(self.a), value(self.b));
+            Pack::of(|l| a.0[l] - b.0[l])
+        };
+        let displacement = || across(at.displacement, &|i| at.base_displacement[i]);
+        let velocity = || across(at.velocity, &|i| at.base_velocity[i]);
+        match self.kind {
+            OutputKind::Displacement => displacement(),
+            OutputKind::Velocity => velocity(),
+            OutputKind::Acceleration => across(at.acceleration, &|i| base.acceleration(i)),
+            OutputKind::Force => {
+                let (x, v) = (displacement(), velocity());
+                let mut on_top = Pack([-0.0; LANES]);
+                for &(i, sign) in &self.elements {
+                    let force = &at.element_force[i];
+                    on_top = Pack::of(|l| on_top.0[l] + sign * force.0[l]);
+                }
+                Pack::of(|l| stiffness.0[l] * x.0[l] + damping.0[l] * v.0[l] + on_top.0[l])
+            }
+        }
+    }
+
     pub(crate) fn needs_acceleration(&self) -> bool {
         self.kind == OutputKind::Acceleration
     }

@@ -1,27 +1,30 @@
 //! The model with its effects, ready to be marched through runs.
 
-use faer::Mat;
 use simgap_effects::{Action, Placed, Sampled, SignalMap};
-use simgap_integrate::exact::{Element, ExactPropagator, Excitation, ForceLaw, MemberMotion};
+use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, Snapshot};
 use simgap_model::{Location, Model, Node};
 
+use crate::batch::excitation;
 use crate::outputs::{BaseMotion, OutputPlan, across, output_plans};
+use crate::prepare::{Prepared, Workshop};
 use crate::{Run, SimulateError};
 
 /// A model with its effects.
 pub struct Simulator {
     pub(crate) model: Model,
-    elements: Vec<Element>,
+    pub(crate) elements: Vec<Element>,
     pub(crate) input_maps: Vec<(usize, Box<dyn SignalMap>)>,
+    /// Kind and values of the effects behind the input maps.
+    pub(crate) input_effects: Vec<(&'static str, Vec<f64>)>,
     output_maps: Vec<(usize, Box<dyn SignalMap>)>,
-    outputs: Vec<OutputPlan>,
+    pub(crate) outputs: Vec<OutputPlan>,
     pub(crate) loads: Vec<f64>,
-    substeps: usize,
+    pub(crate) substeps: usize,
     /// Degrees of freedom of the nominal model; those that effects add come after them.
-    nominal_dofs: usize,
+    pub(crate) nominal_dofs: usize,
     /// Displacement and velocity of each added mass at the first sample beyond those with which it
     /// would follow the others.
-    added: Vec<[f64; 2]>,
+    pub(crate) added: Vec<[f64; 2]>,
 }
 
 /// Displacement and velocity across a location, one value a sample.
@@ -36,11 +39,15 @@ pub struct MemberPath {
 }
 
 /// Gravity on an arm, F = value sin(angle).
-struct Gravity(f64);
+struct Gravity {
+    value: f64,
+}
 
 impl ForceLaw for Gravity {
+    simgap_integrate::lanes!(value);
+
     fn force(&self, motion: MemberMotion) -> f64 {
-        self.0 * motion.displacement.sin()
+        self.value * motion.displacement.sin()
     }
 }
 
@@ -58,6 +65,7 @@ impl Simulator {
         let mut model = nominal.clone();
         let mut laws = Vec::new();
         let (mut input_maps, mut output_maps) = (Vec::new(), Vec::new());
+        let mut input_effects = Vec::new();
         let mut sampling_maps = Vec::new();
         let mut builders = Vec::new();
         let mut added = Vec::new();
@@ -74,6 +82,7 @@ impl Simulator {
                 (Action::Input(map), Location::Input(channel)) => {
                     let of = model.inputs.iter().position(|i| &i.channel == channel);
                     input_maps.extend(of.map(|i| (i, map)));
+                    input_effects.push((placed.effect.kind(), placed.values.clone()));
                 }
                 (Action::Output(map), Location::Channel(channel)) => {
                     let of = model.outputs.iter().position(|o| &o.channel == channel);
@@ -102,7 +111,9 @@ impl Simulator {
             elements.push(Element {
                 a,
                 b,
-                law: Box::new(Gravity(pendulum.value)),
+                law: Box::new(Gravity {
+                    value: pendulum.value,
+                }),
             });
             carried.push(false);
         }
@@ -122,6 +133,7 @@ impl Simulator {
             model,
             elements,
             input_maps,
+            input_effects,
             output_maps,
             nominal_dofs: nominal.dof_count(),
             added,
@@ -181,6 +193,12 @@ impl Simulator {
         initial: &[f64],
         keep: impl Fn(&dyn SignalMap) -> bool,
     ) -> Result<Vec<Vec<f64>>, SimulateError> {
+        let ready = Workshop::default().prepare(self, run, initial)?;
+        Ok(self.deliver(run, self.predict_raw(run, &ready), keep))
+    }
+
+    /// The outputs of the plant, before their maps.
+    pub(crate) fn predict_raw(&self, run: &Run, ready: &Prepared) -> Vec<Vec<f64>> {
         let mut predicted: Vec<Vec<f64>> = self
             .outputs
             .iter()
@@ -188,14 +206,24 @@ impl Simulator {
             .collect();
         let mut acceleration = vec![0.0; self.model.dof_count()];
         let needs_acceleration = self.outputs.iter().any(OutputPlan::needs_acceleration);
-        self.march(run, initial, |propagator, at, base| {
+        self.march(run, ready, |at, base| {
             if needs_acceleration {
-                propagator.acceleration(at, &mut acceleration);
+                ready.propagator.acceleration(at, &mut acceleration);
             }
             for (signal, plan) in predicted.iter_mut().zip(&self.outputs) {
                 signal.push(plan.read(at, &acceleration, base));
             }
-        })?;
+        });
+        predicted
+    }
+
+    /// The outputs of the plant through the maps that are kept.
+    pub(crate) fn deliver(
+        &self,
+        run: &Run,
+        mut predicted: Vec<Vec<f64>>,
+        keep: impl Fn(&dyn SignalMap) -> bool,
+    ) -> Vec<Vec<f64>> {
         for (output, map) in self
             .output_maps
             .iter()
@@ -210,7 +238,7 @@ impl Simulator {
             };
             predicted[*output] = map.apply(signal);
         }
-        Ok(predicted)
+        predicted
     }
 
     /// Motion across a location along a run: between its two nodes, or of a mass.
@@ -224,61 +252,34 @@ impl Simulator {
         at: &Location,
     ) -> Result<MemberPath, SimulateError> {
         let ends = ends(&self.model, at)?;
+        let ready = Workshop::default().prepare(self, run, initial)?;
         let mut path = MemberPath::default();
         let mut acceleration = vec![0.0; self.model.dof_count()];
-        self.march(run, initial, |propagator, at, base| {
-            propagator.acceleration(at, &mut acceleration);
+        self.march(run, &ready, |at, base| {
+            ready.propagator.acceleration(at, &mut acceleration);
             let across = |dofs: &[f64], bases: &[f64]| across(ends, dofs, bases);
             path.displacement
                 .push(across(at.displacement, base.displacement));
             path.velocity.push(across(at.velocity, base.velocity));
             path.acceleration
                 .push(across(&acceleration, base.acceleration));
-        })?;
+        });
         Ok(path)
     }
 
     fn march(
         &self,
         run: &Run,
-        initial: &[f64],
-        mut observe: impl FnMut(
-            &ExactPropagator,
-            &simgap_integrate::exact::Snapshot<'_>,
-            &BaseMotion<'_>,
-        ),
-    ) -> Result<(), SimulateError> {
-        let matrices = self.model.matrices()?;
-        let step = run.time_step_s / self.substeps as f64;
-        let propagator = ExactPropagator::new(&matrices, step)?;
-        let drive = self.drive(run)?;
+        ready: &Prepared,
+        mut observe: impl FnMut(&Snapshot<'_>, &BaseMotion<'_>),
+    ) {
+        let drive = &ready.drive;
         let bases = drive.base_count;
-        let known = self.nominal_dofs;
-        let part = |from: usize, k: usize| -> Vec<f64> {
-            let value = |i: usize| initial.get(i).copied().unwrap_or(0.0);
-            let values: Vec<f64> = (from..from + known).map(value).collect();
-            following(
-                &matrices.stiffness_matrix,
-                values,
-                self.added.iter().map(|s| s[k]),
-            )
-        };
-        let displacement = part(0, 0);
-        let velocity = part(known, 1);
-        let excitation = Excitation {
-            dof_force: &drive.dof_force,
-            base_displacement: &drive.base_displacement,
-            base_velocity: &drive.base_velocity,
-            base_count: bases,
-            sample_count: run.len,
-            start_s: run.start_s,
-            substeps: self.substeps,
-        };
-        propagator.march(
+        ready.propagator.march(
             &self.elements,
-            &excitation,
-            &displacement,
-            &velocity,
+            &excitation(self, run, ready),
+            &ready.displacement,
+            &ready.velocity,
             &mut |at| {
                 let range = at.sample * bases..(at.sample + 1) * bases;
                 let base = BaseMotion {
@@ -286,36 +287,10 @@ impl Simulator {
                     velocity: &drive.base_velocity[range.clone()],
                     acceleration: &drive.base_acceleration[range],
                 };
-                observe(&propagator, at, &base);
+                observe(at, &base);
             },
         );
-        Ok(())
     }
-}
-
-/// Values of all masses from those of the nominal model: an added mass follows the others as the
-/// springs have it at rest, K_aa x_a = −K_ak x_k, and is off by what `added` says.
-fn following(
-    stiffness: &Mat<f64>,
-    mut values: Vec<f64>,
-    added: impl ExactSizeIterator<Item = f64>,
-) -> Vec<f64> {
-    use faer::linalg::solvers::Solve;
-    let (known, more) = (values.len(), added.len());
-    if more == 0 {
-        return values;
-    }
-    let pull = Mat::from_fn(more, 1, |i, _| {
-        let row = (0..known).map(|j| stiffness[(known + i, j)] * values[j]);
-        -row.sum::<f64>()
-    });
-    let own = Mat::from_fn(more, more, |i, j| stiffness[(known + i, known + j)]);
-    let follows = own.partial_piv_lu().solve(&pull);
-    values.extend(added.enumerate().map(|(i, off)| {
-        let value = follows[(i, 0)];
-        off + if value.is_finite() { value } else { 0.0 }
-    }));
-    values
 }
 
 fn ends(model: &Model, at: &Location) -> Result<[Node; 2], SimulateError> {

@@ -101,6 +101,10 @@ pub struct LaneSnapshot<'a> {
     pub acceleration: &'a [Pack],
     /// Force each element carries, N.
     pub element_force: &'a [Pack],
+    /// Displacement of each base node, m.
+    pub base_displacement: &'a [Pack],
+    /// Velocity of each base node, m/s.
+    pub base_velocity: &'a [Pack],
 }
 
 /// Sees every sample of a batch.
@@ -310,6 +314,7 @@ fn observe<S: Simd>(
     block.after.copy_from_slice(&lanes.force[1]);
     block.load(simd, &mut lanes.carried);
     let (displacement, velocity) = block.state.split_at(n);
+    let (base_displacement, base_velocity) = lanes.base[1].split_at(lanes.base[1].len() / 2);
     let acceleration = if observer.needs_acceleration() {
         let at = [displacement, velocity, &block.net];
         block.kernel.acceleration(simd, at, &mut lanes.acceleration);
@@ -326,5 +331,7 @@ fn observe<S: Simd>(
         dof_force: &block.net,
         acceleration,
         element_force: &lanes.carried,
+        base_displacement,
+        base_velocity,
     });
 }

@@ -1,0 +1,116 @@
+//! What several simulations share: propagators of the same matrices, drives of the same run.
+
+use std::rc::Rc;
+
+use faer::Mat;
+use simgap_integrate::exact::ExactPropagator;
+use simgap_model::StructuralMatrices;
+
+use crate::drive::{Drive, DriveKey};
+use crate::{Run, SimulateError, Simulator};
+
+/// A simulation ready to be marched.
+pub(crate) struct Prepared {
+    pub(crate) propagator: Rc<ExactPropagator>,
+    pub(crate) drive: Rc<Drive>,
+    pub(crate) displacement: Vec<f64>,
+    pub(crate) velocity: Vec<f64>,
+}
+
+/// What has been prepared already.
+#[derive(Default)]
+pub(crate) struct Workshop<'a> {
+    propagators: Vec<(StructuralMatrices, f64, Rc<ExactPropagator>)>,
+    drives: Vec<(DriveKey<'a>, Rc<Drive>)>,
+}
+
+impl<'a> Workshop<'a> {
+    fn propagator(
+        &mut self,
+        matrices: &StructuralMatrices,
+        step: f64,
+    ) -> Result<Rc<ExactPropagator>, SimulateError> {
+        let known = self.propagators.iter().find(|(known, of_step, _)| {
+            *of_step == step
+                && known.mass_matrix == matrices.mass_matrix
+                && known.damping_matrix == matrices.damping_matrix
+                && known.stiffness_matrix == matrices.stiffness_matrix
+        });
+        if let Some((_, _, propagator)) = known {
+            return Ok(Rc::clone(propagator));
+        }
+        let propagator = Rc::new(ExactPropagator::new(matrices, step)?);
+        let entry = (matrices.clone(), step, Rc::clone(&propagator));
+        self.propagators.push(entry);
+        Ok(propagator)
+    }
+
+    fn drive(
+        &mut self,
+        simulator: &'a Simulator,
+        run: &'a Run,
+    ) -> Result<Rc<Drive>, SimulateError> {
+        let key = simulator.drive_key(run)?;
+        if let Some((_, drive)) = self.drives.iter().find(|(known, _)| *known == key) {
+            return Ok(Rc::clone(drive));
+        }
+        let drive = Rc::new(simulator.drive(run)?);
+        self.drives.push((key, Rc::clone(&drive)));
+        Ok(drive)
+    }
+
+    /// Prepares a simulation from an initial state of the nominal model.
+    pub(crate) fn prepare(
+        &mut self,
+        simulator: &'a Simulator,
+        run: &'a Run,
+        initial: &[f64],
+    ) -> Result<Prepared, SimulateError> {
+        let matrices = simulator.model.matrices()?;
+        let step = run.time_step_s / simulator.substeps as f64;
+        let propagator = self.propagator(&matrices, step)?;
+        let drive = self.drive(simulator, run)?;
+        let known = simulator.nominal_dofs;
+        let part = |from: usize, k: usize| -> Vec<f64> {
+            let value = |i: usize| initial.get(i).copied().unwrap_or(0.0);
+            let values: Vec<f64> = (from..from + known).map(value).collect();
+            following(
+                &matrices.stiffness_matrix,
+                values,
+                simulator.added.iter().map(|s| s[k]),
+            )
+        };
+        let (displacement, velocity) = (part(0, 0), part(known, 1));
+        Ok(Prepared {
+            propagator,
+            drive,
+            displacement,
+            velocity,
+        })
+    }
+}
+
+/// Values of all masses from those of the nominal model: an added mass follows the others as the
+/// springs have it at rest, K_aa x_a = −K_ak x_k, and is off by what `added` says.
+fn following(
+    stiffness: &Mat<f64>,
+    mut values: Vec<f64>,
+    added: impl ExactSizeIterator<Item = f64>,
+) -> Vec<f64> {
+    use faer::linalg::solvers::Solve;
+    let (known, more) = (values.len(), added.len());
+    if more == 0 {
+        return values;
+    }
+    let pull = Mat::from_fn(more, 1, |i, _| {
+        let row = (0..known).map(|j| stiffness[(known + i, j)] * values[j]);
+        -row.sum::<f64>()
+    });
+    let own = Mat::from_fn(more, more, |i, j| stiffness[(known + i, known + j)]);
+    let follows = own.partial_piv_lu().solve(&pull);
+    values.extend(added.enumerate().map(|(i, off)| {
+        let value = follows[(i, 0)];
+        off + if value.is_finite() { value } else { 0.0 }
+    }));
+    values
+}
