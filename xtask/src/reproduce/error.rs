@@ -31,6 +31,9 @@ pub enum ReproduceError {
     /// A picture.
     #[error(transparent)]
     Chart(#[from] simgap_report::chart::ChartError),
+    /// The diagnosis.
+    #[error(transparent)]
+    Diagnose(#[from] simgap_diagnose::DiagnoseError),
     /// The JSON writer.
     #[error("cannot write {page} as JSON: {source}")]
     Json {

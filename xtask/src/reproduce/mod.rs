@@ -7,6 +7,7 @@
 
 mod claims;
 mod context;
+mod diagnosed;
 mod differentiators;
 mod error;
 mod figures;
@@ -84,6 +85,7 @@ pub fn pages() -> Result<Vec<Page>, ReproduceError> {
         table4::page(&context)?,
         table5::page(&context)?,
         readings::page(&context)?,
+        diagnosed::page(&context)?,
         differentiators::page(&context)?,
         figures::page(&context)?,
     ];
