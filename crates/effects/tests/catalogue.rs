@@ -159,6 +159,19 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "dropouts",
         "outliers",
         "clock_skew",
+        "asymmetric_damping",
+        "backlash",
+        "bilinear_stiffness",
+        "end_stop",
+        "presliding_friction",
+        "hysteresis",
+        "harmonic_force",
+        "position_periodic_force",
+        "time_varying_stiffness",
+        "attached_mode",
+        "flexible_support",
+        "input_lag",
+        "input_delay",
     ];
     for kind in promised {
         assert!(simgap_effects::find(kind).is_some(), "{kind} is gone");

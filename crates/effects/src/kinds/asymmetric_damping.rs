@@ -69,6 +69,7 @@ impl Effect for AsymmetricDamping {
         }
     }
 
+    /// One start is enough: both sizes, of either sign, follow from it in proportion.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         let damping = 0.1 * scale.force_n / scale.velocity_m_per_s;
         vec![vec![damping, -damping]]

@@ -59,23 +59,26 @@ impl Effect for EndStop {
         }
     }
 
-    /// On both sides and on each, at two shares of the range and two stiffnesses.
+    /// On both sides and on each, at two shares of the range and two stiffnesses. A stop on one side
+    /// stands within the range where that does not hold zero.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         let [low, high] = scale.displacement_range_m;
-        let (up, down) = (high.max(0.0), (-low).max(0.0));
-        let reach = up.max(down);
+        let half = 0.5 * (high - low);
+        let reach = high.max(-low);
         let far = 20.0 * reach;
+        // From the far end inwards, in a motion about zero the same share of either side.
+        let inside = |end: f64, share: f64| end - (1.0 - share) * half.min(end);
         let mut starts = vec![];
         for harder in [2.0, 20.0] {
             let stiffness = harder * scale.stiffness_n_per_m;
             for share in [0.5, 0.75] {
                 let stop = share * reach;
                 starts.push(vec![stop, stop, stiffness]);
-                if up > 0.0 {
-                    starts.push(vec![share * up, far, stiffness]);
+                if high > 0.0 {
+                    starts.push(vec![inside(high, share), far, stiffness]);
                 }
-                if down > 0.0 {
-                    starts.push(vec![far, share * down, stiffness]);
+                if low < 0.0 {
+                    starts.push(vec![far, inside(-low, share), stiffness]);
                 }
             }
         }

@@ -28,10 +28,10 @@ impl ForceLaw for Law {
     }
 }
 
-/// Periods within the range of the motion: from less than one to many, each a sixth more.
+/// Periods within the range of the motion: from less than one to twenty, each a sixth more.
 const FEWEST: f64 = 0.7;
 const STEP: f64 = 1.17;
-const COUNT: i32 = 20;
+const COUNT: i32 = 22;
 
 impl Effect for PositionPeriodicForce {
     fn kind(&self) -> &'static str {
