@@ -7,7 +7,7 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// A spring that remembers its way and yields (Bouc-Wen).
 ///
 /// ```text
-/// F = k z                                                                           
+/// F = k z
 /// dz/dd = 1 − (β sgn(z ḋ) + γ) |z / u_y|ⁿ,   γ = 1 − β                              (1)
 /// ```
 ///
@@ -18,9 +18,10 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// Reference: \[Ikhouane2007\], chapter 2.
 pub(crate) struct Hysteresis;
 
-/// Largest step of (1), share of the yield displacement, and most steps over a move.
+/// Largest step of (2), in yield displacements over n.
 const STEP: f64 = 0.25;
-const MOST_STEPS: f64 = 40.0;
+/// From here on the force has levelled off.
+const LEVEL: f64 = 1.0 - 1e-10;
 
 struct Law {
     stiffness: f64,
@@ -31,11 +32,53 @@ struct Law {
 }
 
 impl Law {
-    /// dz/dd in units of the yield displacement, (1), for a move of sign `s`.
-    fn slope(&self, z: f64, s: f64) -> f64 {
-        let against = if z * s >= 0.0 { 1.0 } else { -1.0 };
-        let yielding = self.loop_share * against + (1.0 - self.loop_share);
-        1.0 - yielding * power(z.abs(), self.exponent)
+    /// dy/dx of (1), where y = s z / u_y and x = |Δd| / u_y for a move of sign s:
+    ///
+    /// ```text
+    /// dy/dx = 1 − yⁿ  for y > 0,   1 + (2β − 1) |y|ⁿ  for y < 0                 (2)
+    /// ```
+    #[inline(always)]
+    fn slope(&self, y: f64) -> f64 {
+        let yielding = if y < 0.0 {
+            1.0 - 2.0 * self.loop_share
+        } else {
+            1.0
+        };
+        1.0 - yielding * power(y.abs(), self.exponent)
+    }
+
+    /// (2) by the classical Runge-Kutta method, from y over the way `left`.
+    #[inline(always)]
+    fn advance(&self, mut y: f64, mut left: f64) -> f64 {
+        let longest = STEP / self.exponent;
+        // Against its own force z moves this much faster at most.
+        let back = longest / (2.0 * self.loop_share).max(1.0);
+        while left > 0.0 && y < LEVEL {
+            let h = left.min(if y < 0.0 { back } else { longest });
+            let k1 = self.slope(y);
+            let k2 = self.slope(y + 0.5 * h * k1);
+            let k3 = self.slope(y + 0.5 * h * k2);
+            let k4 = self.slope(y + h * k3);
+            let next = y + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+            if y < 0.0 && next > 0.0 {
+                // (2) has a kink at zero: the step ends there.
+                left -= self.way_to_zero(y);
+                y = 0.0;
+            } else {
+                left -= h;
+                y = next;
+            }
+        }
+        y.clamp(-1.0, 1.0)
+    }
+
+    /// The way ∫ dy / (dy/dx) from y < 0 to zero, by the rule of Gauss with three points.
+    #[inline(always)]
+    fn way_to_zero(&self, y: f64) -> f64 {
+        const OFF_MIDDLE: f64 = 0.774_596_669_241_483_4; // √(3/5)
+        let per = |share: f64| 1.0 / self.slope(share * y);
+        let ends = per(0.5 * (1.0 - OFF_MIDDLE)) + per(0.5 * (1.0 + OFF_MIDDLE));
+        -y * (5.0 * ends + 8.0 * per(0.5)) / 18.0
     }
 }
 
@@ -65,22 +108,13 @@ impl ForceLaw for Law {
         self.start
     }
 
-    /// (1) by the classical Runge-Kutta method along the move; the memory is z / u_y.
+    /// (2) along the move; the memory is z / u_y.
     fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
         let moved = (to.displacement - from.displacement) / self.yield_displacement;
         let mut z = memory;
-        if moved != 0.0 && moved.is_finite() {
-            let count = (moved.abs() / STEP).ceil().clamp(1.0, MOST_STEPS);
-            let h = (moved / count).clamp(-1.0, 1.0);
+        if moved != 0.0 && !moved.is_nan() {
             let s = moved.signum();
-            for _ in 0..count as usize {
-                let k1 = self.slope(z, s);
-                let k2 = self.slope(z + 0.5 * h * k1, s);
-                let k3 = self.slope(z + 0.5 * h * k2, s);
-                let k4 = self.slope(z + h * k3, s);
-                z += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-                z = z.clamp(-1.0, 1.0);
-            }
+            z = s * self.advance(s * memory, moved.abs());
         }
         (self.stiffness * self.yield_displacement * z, z)
     }
@@ -112,7 +146,7 @@ impl Effect for Hysteresis {
             &[
                 Parameter::size("hysteretic_stiffness_n_per_m", "N/m", 0.0, f64::INFINITY),
                 Parameter::shape("yield_displacement_m", "m", 0.0, f64::INFINITY),
-                Parameter::shape("loop_share", "1", 0.05, 1.0),
+                Parameter::shape("loop_share", "1", 0.05, 2.0),
                 Parameter::shape("exponent", "1", 1.0, 4.0),
                 Parameter::size("start_share", "1", -1.0, 1.0).of_record(),
             ]
