@@ -13,8 +13,10 @@
 //!
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
 
+use simgap_simulate::LANES;
+
 use crate::layout::{Freedom, Layout};
-use crate::linearise::{Linearised, Signals, discrepancies, linearise, refresh};
+use crate::linearise::{Linearised, Signals, discrepancies, discrepancies_of, linearise, refresh};
 use crate::normal::{damped_step, normal_equations, variances};
 use crate::{EstimateError, Problem, Start, Weights};
 
@@ -164,25 +166,49 @@ impl Line<'_> {
                 !outward
             })
             .collect();
-        for _ in 0..MOST_DAMPINGS {
-            if let Some(step) = damped_step(&hessian, &gradient, &free, *damping) {
-                let mut next: Vec<f64> = (0..theta.len())
-                    .map(|i| theta[i] + step[i] * layout.scale[i])
-                    .collect();
-                layout.make_physical(&mut next);
-                if let Ok(discrepancy) = discrepancies(self.problem, layout, &next) {
-                    let (value, _) = self.merit.of(layout, &next, &discrepancy);
-                    if value < objective {
-                        *damping = (*damping * 0.1).max(1e-9);
-                        return Some(Next {
-                            theta: next,
-                            objective: value,
-                            discrepancy,
-                        });
-                    }
+        // One trial is mostly enough; where it is not, further ones cost little side by side.
+        let together = (LANES / self.problem.runs.len().max(1)).max(1);
+        let mut tried = 0;
+        while tried < MOST_DAMPINGS {
+            let count = if tried == 0 { 1 } else { together };
+            let count = count.min(MOST_DAMPINGS - tried);
+            let mut trials: Vec<(f64, Vec<f64>)> = Vec::with_capacity(count);
+            for _ in 0..count {
+                if let Some(step) = damped_step(&hessian, &gradient, &free, *damping) {
+                    let mut next: Vec<f64> = (0..theta.len())
+                        .map(|i| theta[i] + step[i] * layout.scale[i])
+                        .collect();
+                    layout.make_physical(&mut next);
+                    trials.push((*damping, next));
                 }
+                *damping *= 10.0;
             }
-            *damping *= 10.0;
+            tried += count;
+            if let Some((used, next)) = self.first_better(objective, trials) {
+                *damping = (used * 0.1).max(1e-9);
+                return Some(next);
+            }
+        }
+        None
+    }
+
+    /// The first of several trials, in their order, that lowers the objective.
+    fn first_better(&self, objective: f64, trials: Vec<(f64, Vec<f64>)>) -> Option<(f64, Next)> {
+        let (dampings, thetas): (Vec<f64>, Vec<Vec<f64>>) = trials.into_iter().unzip();
+        let all = discrepancies_of(self.problem, self.layout, &thetas);
+        for ((damping, theta), discrepancy) in dampings.into_iter().zip(thetas).zip(all) {
+            let Ok(discrepancy) = discrepancy else {
+                continue;
+            };
+            let (value, _) = self.merit.of(self.layout, &theta, &discrepancy);
+            if value < objective {
+                let next = Next {
+                    theta,
+                    objective: value,
+                    discrepancy,
+                };
+                return Some((damping, next));
+            }
         }
         None
     }

@@ -1,5 +1,7 @@
 //! Residuals and their sensitivities at one point.
 
+use simgap_simulate::{Job, Simulator, predict_all};
+
 use crate::layout::Layout;
 use crate::{EstimateError, Problem};
 
@@ -19,35 +21,47 @@ pub(crate) struct Linearised {
     pub(crate) columns: Vec<Vec<Signals>>,
 }
 
-/// Predicts a run with a packed vector.
-pub(crate) fn predict(
-    problem: &Problem,
-    layout: &Layout,
-    theta: &[f64],
+/// A run to be simulated with a packed vector.
+struct Point<'a> {
+    theta: Vec<f64>,
     run: usize,
-) -> Result<Signals, EstimateError> {
-    let start = layout.unpack(theta);
-    let effects: Vec<_> = start.effects.into_iter().chain(start.nominal).collect();
-    problem
-        .simulator(&effects, run)?
-        .predict(&problem.runs[run], layout.state(theta, run))
+    /// Without what moves in steps.
+    smooth: bool,
+    layout: &'a Layout,
 }
 
-/// As [`predict`], without what moves in steps where there is such; `None` where there is not.
-fn predict_smooth(
-    problem: &Problem,
-    layout: &Layout,
-    theta: &[f64],
-    run: usize,
-) -> Result<Option<Signals>, EstimateError> {
-    let start = layout.unpack(theta);
-    let effects: Vec<_> = start.effects.into_iter().chain(start.nominal).collect();
-    let simulator = problem.simulator(&effects, run)?;
-    if !simulator.is_stepped() {
-        return Ok(None);
+impl Point<'_> {
+    fn simulator(&self, problem: &Problem) -> Result<Simulator, EstimateError> {
+        let start = self.layout.unpack(&self.theta);
+        let effects: Vec<_> = start.effects.into_iter().chain(start.nominal).collect();
+        problem.simulator(&effects, self.run)
     }
-    let smooth = simulator.predict_smooth(&problem.runs[run], layout.state(theta, run))?;
-    Ok(Some(subtract(&problem.runs[run].measured, smooth)))
+}
+
+/// Measured minus predicted at every point, in one batch.
+fn simulate(problem: &Problem, points: &[Point<'_>]) -> Vec<Result<Signals, EstimateError>> {
+    let simulators: Vec<_> = points.iter().map(|p| p.simulator(problem)).collect();
+    let ready = simulators
+        .iter()
+        .zip(points)
+        .filter_map(|(simulator, point)| {
+            Some(Job {
+                simulator: simulator.as_ref().ok()?,
+                run: &problem.runs[point.run],
+                initial: point.layout.state(&point.theta, point.run),
+                smooth: point.smooth,
+            })
+        });
+    let mut predictions = predict_all(&ready.collect::<Vec<_>>()).into_iter();
+    let mut results = Vec::with_capacity(points.len());
+    for (simulator, point) in simulators.into_iter().zip(points) {
+        let predicted = match simulator {
+            Ok(_) => predictions.next().unwrap_or_else(|| Ok(vec![])),
+            Err(error) => Err(error),
+        };
+        results.push(predicted.map(|p| subtract(&problem.runs[point.run].measured, p)));
+    }
+    results
 }
 
 /// Measured minus predicted, for every run and channel.
@@ -56,11 +70,32 @@ pub(crate) fn discrepancies(
     layout: &Layout,
     theta: &[f64],
 ) -> Result<Vec<Signals>, EstimateError> {
-    (0..problem.runs.len())
-        .map(|run| {
-            let predicted = predict(problem, layout, theta, run)?;
-            Ok(subtract(&problem.runs[run].measured, predicted))
+    let mut all = discrepancies_of(problem, layout, &[theta.to_vec()]);
+    all.pop().unwrap_or_else(|| Ok(vec![]))
+}
+
+/// As [`discrepancies`], for several vectors at once.
+pub(crate) fn discrepancies_of(
+    problem: &Problem,
+    layout: &Layout,
+    thetas: &[Vec<f64>],
+) -> Vec<Result<Vec<Signals>, EstimateError>> {
+    let runs = problem.runs.len();
+    let points: Vec<Point<'_>> = thetas
+        .iter()
+        .flat_map(|theta| {
+            (0..runs).map(|run| Point {
+                theta: theta.clone(),
+                run,
+                smooth: false,
+                layout,
+            })
         })
+        .collect();
+    let mut signals = simulate(problem, &points).into_iter();
+    thetas
+        .iter()
+        .map(|_| signals.by_ref().take(runs).collect())
         .collect()
 }
 
@@ -77,40 +112,14 @@ fn subtract(measured: &[Option<Vec<f64>>], mut predicted: Signals) -> Signals {
     predicted
 }
 
-/// Derivative of the prediction of a run by one entry of θ / scale, given its discrepancy at θ.
-fn column(
-    problem: &Problem,
-    layout: &Layout,
-    theta: &[f64],
-    run: usize,
-    entry: usize,
-    discrepancy: &Signals,
-) -> Result<Signals, EstimateError> {
-    if layout.is_held(entry) {
-        let zero = |signal: &Vec<f64>| vec![0.0; signal.len()];
-        return Ok(discrepancy.iter().map(zero).collect());
-    }
-    let mut moved = theta.to_vec();
-    let mut step = DIFFERENCE * layout.scale[entry];
+/// The size of the step that entry is differentiated with.
+fn difference(layout: &Layout, theta: &[f64], entry: usize) -> f64 {
+    let step = DIFFERENCE * layout.scale[entry];
     if theta[entry] + step > layout.upper[entry] {
-        step = -step;
+        -step
+    } else {
+        step
     }
-    moved[entry] += step;
-    let mut change = match predict_smooth(problem, layout, &moved, run)? {
-        Some(change) => change,
-        None => {
-            let predicted = predict(problem, layout, &moved, run)?;
-            subtract(&problem.runs[run].measured, predicted)
-        }
-    };
-    let factor = layout.scale[entry] / step;
-    for (signal, base) in change.iter_mut().zip(discrepancy) {
-        signal
-            .iter_mut()
-            .zip(base)
-            .for_each(|(after, before)| *after = (before - *after) * factor);
-    }
-    Ok(change)
 }
 
 /// Discrepancies and all sensitivities at θ.
@@ -130,6 +139,8 @@ pub(crate) fn linearise(
 
 /// Sensitivities at θ, where `known` holds its discrepancies and `stale` may hand over a column of
 /// a run (run, place in the run's list) from another point instead of computing it.
+///
+/// All that is missing, of all runs, is simulated in one batch.
 pub(crate) fn refresh(
     problem: &Problem,
     layout: &Layout,
@@ -138,21 +149,76 @@ pub(crate) fn refresh(
     mut stale: impl FnMut(usize, usize) -> Option<Signals>,
 ) -> Result<Linearised, EstimateError> {
     let discrepancy = known.discrepancy;
-    let mut columns = Vec::with_capacity(problem.runs.len());
+    let at = |theta: Vec<f64>, run: usize| Point {
+        theta,
+        run,
+        smooth: true,
+        layout,
+    };
+    let mut columns: Vec<Vec<Option<Signals>>> = Vec::with_capacity(discrepancy.len());
+    let mut points = Vec::new();
+    let mut stepped = Vec::new();
     for (run, own) in discrepancy.iter().enumerate() {
         let mut list = Vec::new();
-        let smooth = predict_smooth(problem, layout, theta, run)?;
-        let own = smooth.as_ref().unwrap_or(own);
         for (place, entry) in layout.entries(run).enumerate() {
-            list.push(match stale(run, place) {
-                Some(column) => column,
-                None => column(problem, layout, theta, run, entry, own)?,
-            });
+            list.push(stale(run, place).or_else(|| {
+                let zero = |signal: &Vec<f64>| vec![0.0; signal.len()];
+                layout
+                    .is_held(entry)
+                    .then(|| own.iter().map(zero).collect())
+            }));
+            if list[place].is_none() {
+                let mut moved = theta.to_vec();
+                moved[entry] += difference(layout, theta, entry);
+                points.push(at(moved, run));
+            }
         }
         columns.push(list);
+        let here = at(theta.to_vec(), run);
+        stepped.push(here.simulator(problem)?.is_stepped());
+    }
+    // What moves in steps is left out at both ends of a difference.
+    let bases = (0..stepped.len()).filter(|&run| stepped[run]);
+    let mut smooth = simulate(
+        problem,
+        &bases.map(|run| at(theta.to_vec(), run)).collect::<Vec<_>>(),
+    )
+    .into_iter();
+    let mut changes = simulate(problem, &points).into_iter();
+    let mut all = Vec::with_capacity(columns.len());
+    for (run, list) in columns.into_iter().enumerate() {
+        let smooth = if stepped[run] {
+            smooth.next().transpose()?
+        } else {
+            None
+        };
+        let own = smooth.as_ref().unwrap_or(&discrepancy[run]);
+        let mut filled = Vec::with_capacity(list.len());
+        for (column, entry) in list.into_iter().zip(layout.entries(run)) {
+            filled.push(match column {
+                Some(column) => column,
+                None => {
+                    let moved = changes.next().unwrap_or_else(|| Ok(vec![]))?;
+                    let factor = layout.scale[entry] / difference(layout, theta, entry);
+                    derivative(moved, own, factor)
+                }
+            });
+        }
+        all.push(filled);
     }
     Ok(Linearised {
         discrepancy,
-        columns,
+        columns: all,
     })
+}
+
+/// Change of the prediction between two discrepancies, times a factor.
+fn derivative(mut moved: Signals, own: &Signals, factor: f64) -> Signals {
+    for (signal, base) in moved.iter_mut().zip(own) {
+        signal
+            .iter_mut()
+            .zip(base)
+            .for_each(|(after, before)| *after = (before - *after) * factor);
+    }
+    moved
 }

@@ -15,6 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use simgap_effects::{Action, Clock, Effect, Placed, SiteScale};
+use simgap_simulate::{Job, predict_all};
 
 use crate::fit::{Merit, fit_with, state_scale};
 use crate::layout::{Freedom, Layout};
@@ -24,6 +25,8 @@ use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
 const TRIAL: f64 = 0.02;
+/// Shapes that are simulated in one batch: their columns are as long as the records.
+const SHAPES_TOGETHER: usize = 8;
 /// Columns that keep less than this of their energy past the nuisance are explained by it.
 const HIDDEN: f64 = 1e-6;
 
@@ -98,12 +101,72 @@ pub fn score(
     candidate: &Candidate,
     scale: &SiteScale,
 ) -> Result<Vec<Score>, EstimateError> {
+    let shapes = candidate.effect.starts(scale);
     let mut scores = Vec::new();
-    for shape in candidate.effect.starts(scale) {
-        scores.extend(base.score_shape(candidate, &shape)?);
+    for few in shapes.chunks(SHAPES_TOGETHER) {
+        let wanted: Vec<Vec<Trial>> = few.iter().map(|shape| trials(candidate, shape)).collect();
+        let mut columns = base.columns(candidate, &wanted.concat())?.into_iter();
+        for (shape, wanted) in few.iter().zip(wanted) {
+            let own: Vec<Vec<Signals>> = columns.by_ref().take(wanted.len()).collect();
+            scores.extend(base.score_shape(candidate, shape, own));
+        }
     }
     scores.sort_by(|a: &Score, b: &Score| b.gain.total_cmp(&a.gain));
     Ok(scores)
+}
+
+/// An instance of a candidate, and the share of its starting values that it is.
+type Trial = (Vec<f64>, f64);
+
+/// How the instances of a shape are scored.
+enum Way {
+    /// By each size alone (places of the parameters): the prediction is linear in them.
+    BySize(Vec<usize>),
+    /// By the whole of what it does: it has no size to grow from (a limit).
+    AsItStands,
+    /// By a sine and a cosine.
+    ByClock(Clock),
+}
+
+fn way(candidate: &Candidate, shape: &[f64]) -> Way {
+    if let Some(clock) = candidate.effect.clock() {
+        return Way::ByClock(clock);
+    }
+    let parameters = candidate.effect.parameters();
+    // What a record has of its own is left to the fit.
+    let sizes: Vec<usize> = (0..parameters.len())
+        .filter(|&i| !parameters[i].per_record)
+        .filter(|&i| parameters[i].neutral.is_some_and(f64::is_finite))
+        .collect();
+    let stepped = match candidate.effect.action(shape) {
+        Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
+        _ => false,
+    };
+    // A limit, or a map that moves in steps, does not grow in proportion to anything.
+    if sizes.is_empty() || stepped {
+        Way::AsItStands
+    } else {
+        Way::BySize(sizes)
+    }
+}
+
+/// What has to be simulated to score a shape.
+fn trials(candidate: &Candidate, shape: &[f64]) -> Vec<Trial> {
+    match way(candidate, shape) {
+        Way::BySize(sizes) => sizes
+            .into_iter()
+            .map(|k| (sized(candidate.effect, shape, Some(k), TRIAL), TRIAL))
+            .collect(),
+        Way::AsItStands => vec![(shape.to_vec(), 1.0)],
+        Way::ByClock(clock) => [0.0, FRAC_PI_2]
+            .map(|phase| {
+                let mut values = shape.to_vec();
+                values[clock.amplitude] *= TRIAL;
+                values[clock.phase] = phase;
+                (values, TRIAL)
+            })
+            .into(),
+    }
 }
 
 /// The values of a shape with its k-th sized parameter at a share of its start and the other sized
@@ -150,36 +213,29 @@ impl Base<'_> {
         })
     }
 
+    /// Scores a shape from the columns of its trials.
     fn score_shape(
         &self,
         candidate: &Candidate,
         shape: &[f64],
-    ) -> Result<Option<Score>, EstimateError> {
-        if let Some(clock) = candidate.effect.clock() {
-            return self.score_clock(candidate, shape, clock);
+        columns: Vec<Vec<Signals>>,
+    ) -> Option<Score> {
+        match way(candidate, shape) {
+            Way::BySize(sizes) => self.score_sizes(candidate, shape, &sizes, &columns),
+            Way::AsItStands => self.score_as_it_stands(candidate, shape, &columns),
+            Way::ByClock(clock) => self.score_clock(candidate, shape, clock, columns),
         }
+    }
+
+    fn score_sizes(
+        &self,
+        candidate: &Candidate,
+        shape: &[f64],
+        sizes: &[usize],
+        columns: &[Vec<Signals>],
+    ) -> Option<Score> {
         let parameters = candidate.effect.parameters();
-        // What a record has of its own is left to the fit.
-        let sizes: Vec<usize> = (0..parameters.len())
-            .filter(|&i| !parameters[i].per_record)
-            .filter(|&i| parameters[i].neutral.is_some_and(f64::is_finite))
-            .collect();
-        let stepped = match candidate.effect.action(shape) {
-            Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
-            _ => false,
-        };
-        // A limit, or a map that moves in steps, does not grow in proportion to anything.
-        if sizes.is_empty() || stepped {
-            return self.score_as_it_stands(candidate, shape);
-        }
-        let mut columns = Vec::new();
-        for &k in &sizes {
-            let values = sized(candidate.effect, shape, Some(k), TRIAL);
-            columns.push(self.columns(candidate, values, TRIAL)?);
-        }
-        let Some((amplitude, energy)) = self.amplitudes(&columns) else {
-            return Ok(None);
-        };
+        let (amplitude, energy) = self.amplitudes(columns)?;
         let mut values = shape.to_vec();
         let mut absent = false;
         for (&k, a) in sizes.iter().zip(&amplitude) {
@@ -191,10 +247,10 @@ impl Base<'_> {
             }
         }
         if absent && sizes.len() == 1 {
-            return Ok(None);
+            return None;
         }
         candidate.effect.make_physical(&mut values);
-        Ok(Some(self.scored(candidate, values, energy)))
+        Some(self.scored(candidate, values, energy))
     }
 
     fn scored(&self, candidate: &Candidate, values: Vec<f64>, energy: f64) -> Score {
@@ -210,13 +266,14 @@ impl Base<'_> {
         &self,
         candidate: &Candidate,
         shape: &[f64],
-    ) -> Result<Option<Score>, EstimateError> {
-        let column = self.columns(candidate, shape.to_vec(), 1.0)?;
-        let energy = match self.amplitudes(&[column]) {
-            Some((amplitude, energy)) if amplitude[0] > 0.0 => energy,
-            _ => return Ok(None),
-        };
-        Ok(Some(self.scored(candidate, shape.to_vec(), energy)))
+        columns: &[Vec<Signals>],
+    ) -> Option<Score> {
+        match self.amplitudes(columns) {
+            Some((amplitude, energy)) if amplitude[0] > 0.0 => {
+                Some(self.scored(candidate, shape.to_vec(), energy))
+            }
+            _ => None,
+        }
     }
 
     /// An effect with a clock: a sine and a cosine of its own for each run.
@@ -225,14 +282,11 @@ impl Base<'_> {
         candidate: &Candidate,
         shape: &[f64],
         clock: Clock,
-    ) -> Result<Option<Score>, EstimateError> {
+        phases: Vec<Vec<Signals>>,
+    ) -> Option<Score> {
         let runs = self.problem.runs.len();
         let mut columns = Vec::new();
-        for phase in [0.0, FRAC_PI_2] {
-            let mut values = shape.to_vec();
-            values[clock.amplitude] *= TRIAL;
-            values[clock.phase] = phase;
-            let together = self.columns(candidate, values, TRIAL)?;
+        for together in phases {
             for run in 0..runs {
                 let alone = together.iter().enumerate().map(|(r, signals)| {
                     let kept = |signal: &Vec<f64>| {
@@ -247,15 +301,13 @@ impl Base<'_> {
                 columns.push(alone.collect());
             }
         }
-        let Some((parts, energy)) = self.amplitudes(&columns) else {
-            return Ok(None);
-        };
+        let (parts, energy) = self.amplitudes(&columns)?;
         let size = |run: usize| parts[run].hypot(parts[runs + run]);
         let mean = ((0..runs).map(|r| size(r).powi(2)).sum::<f64>() / runs as f64).sqrt();
         let mut values = shape.to_vec();
         values[clock.amplitude] *= mean;
         if !values.iter().all(|value| value.is_finite()) || mean == 0.0 {
-            return Ok(None);
+            return None;
         }
         let mut score = self.scored(candidate, values, energy);
         let own = score.start.own_places();
@@ -269,43 +321,62 @@ impl Base<'_> {
                 own.iter().map(value).collect()
             })
             .collect();
-        Ok(Some(score))
+        Some(score)
     }
 
-    /// Change of the prediction of every run by the trial effect, divided by its share.
+    /// Change of the prediction of every run by each trial, divided by its share.
     fn columns(
         &self,
         candidate: &Candidate,
-        values: Vec<f64>,
-        share: f64,
-    ) -> Result<Vec<Signals>, EstimateError> {
+        trials: &[Trial],
+    ) -> Result<Vec<Vec<Signals>>, EstimateError> {
         let estimate = &self.fit.estimate;
-        let trial = Placed::new(candidate.effect, candidate.at.clone(), values);
-        let effects: Vec<Placed> = estimate
-            .effects
-            .iter()
-            .chain(&estimate.nominal)
-            .chain([&trial])
-            .cloned()
-            .collect();
-        let mut all = Vec::new();
-        for (run, signals) in self.problem.runs.iter().enumerate() {
-            let simulator = self.problem.simulator(&effects, run)?;
-            let mut predicted = simulator.predict(signals, &estimate.initial[run])?;
-            for (c, signal) in predicted.iter_mut().enumerate() {
-                let before = &self.at.discrepancy[run][c];
-                match &signals.measured[c] {
-                    Some(measured) => {
-                        for (i, p) in signal.iter_mut().enumerate() {
-                            *p = (*p - (measured[i] - before[i])) / share;
-                        }
-                    }
-                    None => signal.fill(0.0),
-                }
+        let runs = self.problem.runs.len();
+        let mut simulators = Vec::with_capacity(trials.len() * runs);
+        for (values, _) in trials {
+            let trial = Placed::new(candidate.effect, candidate.at.clone(), values.clone());
+            let known = estimate.effects.iter().chain(&estimate.nominal);
+            let effects: Vec<Placed> = known.chain([&trial]).cloned().collect();
+            for run in 0..runs {
+                simulators.push(self.problem.simulator(&effects, run)?);
             }
-            all.push(predicted);
         }
-        Ok(all)
+        let jobs: Vec<Job<'_>> = simulators
+            .iter()
+            .enumerate()
+            .map(|(k, simulator)| Job {
+                simulator,
+                run: &self.problem.runs[k % runs],
+                initial: &estimate.initial[k % runs],
+                smooth: false,
+            })
+            .collect();
+        let mut predicted = predict_all(&jobs).into_iter();
+        trials
+            .iter()
+            .map(|(_, share)| {
+                let of_trial = predicted.by_ref().take(runs).enumerate();
+                of_trial
+                    .map(|(run, signals)| Ok(self.change(run, signals?, *share)))
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// Change of the prediction of a run, divided by the share.
+    fn change(&self, run: usize, mut predicted: Signals, share: f64) -> Signals {
+        for (c, signal) in predicted.iter_mut().enumerate() {
+            let before = &self.at.discrepancy[run][c];
+            match &self.problem.runs[run].measured[c] {
+                Some(measured) => {
+                    for (i, p) in signal.iter_mut().enumerate() {
+                        *p = (*p - (measured[i] - before[i])) / share;
+                    }
+                }
+                None => signal.fill(0.0),
+            }
+        }
+        predicted
     }
 
     /// Solves (1): amplitudes and the energy bᵀâ they explain.
