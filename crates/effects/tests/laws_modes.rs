@@ -1,0 +1,217 @@
+//! Hidden masses: what an attached mode and a flexible support do to the dynamic stiffness.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use std::f64::consts::TAU;
+
+use common::{MODEL, effect, model, scale};
+use simgap_effects::{Action, SiteScale};
+use simgap_model::{GROUND, Location, Model};
+
+/// Rounding in the elimination of one mass, relative.
+const ROUNDING: f64 = 1e-12;
+
+/// A complex number as (re, im).
+type Complex = (f64, f64);
+
+fn add(a: Complex, b: Complex) -> Complex {
+    (a.0 + b.0, a.1 + b.1)
+}
+
+fn sub(a: Complex, b: Complex) -> Complex {
+    (a.0 - b.0, a.1 - b.1)
+}
+
+fn mul(a: Complex, b: Complex) -> Complex {
+    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
+}
+
+fn div(a: Complex, b: Complex) -> Complex {
+    let square = b.0 * b.0 + b.1 * b.1;
+    let (re, im) = mul(a, (b.0, -b.1));
+    (re / square, im / square)
+}
+
+/// K + iωC − ω²M of the two masses of the model, with a third eliminated: D − d dᵀ / D₃₃.
+fn dynamic_stiffness(model: &Model, omega: f64) -> [[Complex; 2]; 2] {
+    let matrices = model.matrices().unwrap();
+    let entry = |i: usize, j: usize| -> Complex {
+        let (m, c, k) = (
+            matrices.mass_matrix[(i, j)],
+            matrices.damping_matrix[(i, j)],
+            matrices.stiffness_matrix[(i, j)],
+        );
+        (k - omega * omega * m, omega * c)
+    };
+    let reduced = |i, j| match model.dof_count() {
+        2 => entry(i, j),
+        _ => sub(entry(i, j), div(mul(entry(i, 2), entry(2, j)), entry(2, 2))),
+    };
+    [
+        [reduced(0, 0), reduced(0, 1)],
+        [reduced(1, 0), reduced(1, 1)],
+    ]
+}
+
+/// The model with the hidden mass of an effect, and how that mass begins.
+fn with_mode(kind: &str, values: &[f64], at: &Location, model: &Model) -> (Model, [f64; 2]) {
+    let mut changed = model.clone();
+    match effect(kind).action(values) {
+        Action::Mode { change, start } => {
+            change(&mut changed, at);
+            (changed, start)
+        }
+        _ => panic!("{kind} adds no mass"),
+    }
+}
+
+/// Asserts that a hidden mass adds `needed(ω)` to the first mass's own entry and nothing else.
+fn assert_adds(before: &Model, after: &Model, needed: impl Fn(f64) -> Complex) {
+    assert_eq!(after.dof_count(), before.dof_count() + 1);
+    for freq_hz in [0.0, 0.7, 4.9, 5.1, 8.0, 300.0] {
+        let omega = TAU * freq_hz;
+        let (old, new) = (
+            dynamic_stiffness(before, omega),
+            dynamic_stiffness(after, omega),
+        );
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let added = if (i, j) == (0, 0) {
+                needed(omega)
+            } else {
+                (0.0, 0.0)
+            };
+            let error = sub(new[i][j], add(old[i][j], added));
+            let size = old[i][j].0.hypot(old[i][j].1) + added.0.hypot(added.1);
+            assert!(
+                error.0.hypot(error.1) <= ROUNDING * size,
+                "({i}, {j}) at {freq_hz} Hz: {error:?} off"
+            );
+        }
+    }
+}
+
+fn mass(name: &str) -> Location {
+    Location::Mass(name.into())
+}
+
+/// −ω² m (k + iωc) / (k + iωc − ω² m) at its host, with k = m (2πf)² and c = 2 ζ m 2πf.
+#[test]
+fn verify_attached_mode_at_its_host() {
+    let (attached, freq_hz, ratio) = (0.4, 5.0, 0.03);
+    let values = [attached, freq_hz, ratio, 1e-4, -0.02];
+    let (changed, start) = with_mode("attached_mode", &values, &mass("carriage"), &model());
+    assert_eq!(start, [1e-4, -0.02]);
+    assert_adds(&model(), &changed, |omega| {
+        let own = TAU * freq_hz;
+        let member = (attached * own * own, 2.0 * ratio * attached * own * omega);
+        let inertia = (-omega * omega * attached, 0.0);
+        div(mul(inertia, member), add(member, inertia))
+    });
+    // The host keeps its mass; far below the natural frequency it carries both.
+    let before = model().matrices().unwrap().mass_matrix[(0, 0)];
+    assert_eq!(changed.matrices().unwrap().mass_matrix[(0, 0)], before);
+}
+
+#[test]
+fn verify_attached_mode_without_mass_is_none() {
+    let values = [0.0, 5.0, 0.03, 1e-4, 0.2];
+    let (changed, _) = with_mode("attached_mode", &values, &mass("load"), &model());
+    assert_eq!(changed, model());
+}
+
+/// Two hidden masses, and one of a file that has such a name already, are told apart.
+#[test]
+fn verify_hidden_masses_have_names_of_their_own() {
+    let values = [0.1, 5.0, 0.03, 0.0, 0.0];
+    let mut changed = model();
+    for host in ["carriage", "carriage", "load"] {
+        changed = with_mode("attached_mode", &values, &mass(host), &changed).0;
+    }
+    let mut names: Vec<&str> = changed.masses.iter().map(|m| m.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), 5);
+    assert!(
+        changed
+            .to_toml()
+            .is_ok_and(|text| Model::from_toml(&text).is_ok())
+    );
+}
+
+#[test]
+fn verify_attached_mode_starts_at_lines_and_about_the_motion() {
+    let starts = |scale: &SiteScale| effect("attached_mode").starts(scale);
+    let has = |starts: &[Vec<f64>], freq_hz: f64| {
+        starts.iter().any(|s| (s[1] / freq_hz - 1.0).abs() < 1e-9)
+    };
+    let found = starts(&scale());
+    for freq_hz in [3.1, 12.7, 1.5 * 2.3] {
+        assert!(has(&found, freq_hz), "{freq_hz} Hz: {found:?}");
+    }
+    // A free decay may leave no line and the motion none: the usual speed says where to look.
+    let silent = SiteScale {
+        lines_hz: [0.0; 4],
+        motion_hz: [0.0; 4],
+        ..scale()
+    };
+    let usual = 0.03 / 0.002 / TAU;
+    assert!(has(&starts(&silent), 1.5 * usual));
+    // None that the samples cannot show.
+    let coarse = SiteScale {
+        time_step_s: 0.1,
+        ..scale()
+    };
+    assert!(starts(&coarse).iter().all(|s| s[1] < 5.0));
+}
+
+/// The spring of [`MODEL`] between carriage and ground, and a damper beside it.
+fn grounded() -> Model {
+    let damper =
+        "[[damper]]\nname = \"leak\"\nbetween = [\"ground\", \"carriage\"]\ndamping = 11.0\n";
+    Model::from_toml(&format!("{MODEL}\n{damper}")).unwrap()
+}
+
+/// The member g = k + iωc and the support h = kₛ + iωcₛ − ω² mₛ in series: −g + g h / (g + h).
+#[test]
+fn verify_flexible_support_is_in_series_with_its_members() {
+    let (stiffness, support_mass, ratio) = (60_000.0, 1.5, 0.05);
+    let values = [stiffness, support_mass, ratio, 2e-5, 0.001];
+    for pair in [["carriage", GROUND], [GROUND, "carriage"]] {
+        let at = Location::Between(pair.map(String::from));
+        let (changed, start) = with_mode("flexible_support", &values, &at, &grounded());
+        assert_eq!(start, [2e-5, 0.001]);
+        assert_adds(&grounded(), &changed, |omega| {
+            let member = (4000.0, 11.0 * omega);
+            let damping = 2.0 * ratio * (stiffness * support_mass).sqrt();
+            let support = (stiffness - omega * omega * support_mass, damping * omega);
+            sub(div(mul(member, support), add(member, support)), member)
+        });
+    }
+}
+
+#[test]
+fn verify_a_rigid_support_is_the_ground() {
+    let at = Location::Between(["carriage".into(), GROUND.into()]);
+    let rigid = [f64::INFINITY, 1.5, 0.05, 0.0, 0.0];
+    let (changed, _) = with_mode("flexible_support", &rigid, &at, &grounded());
+    assert_eq!(changed, grounded());
+    // Members that do not stand on the ground have no support.
+    let hanging = Location::Between(["carriage".into(), "load".into()]);
+    let soft = [1e4, 1.5, 0.05, 0.0, 0.0];
+    let (changed, _) = with_mode("flexible_support", &soft, &hanging, &grounded());
+    assert_eq!(changed, grounded());
+}
+
+/// A support whose own mode is at a line: √((kₛ + k) / mₛ) = 2π f, with the mass it stands under held.
+#[test]
+fn verify_flexible_support_starts_at_lines() {
+    let starts = effect("flexible_support").starts(&scale());
+    for line_hz in [3.1, 12.7] {
+        let at_line = |s: &&Vec<f64>| {
+            let own = ((s[0] + scale().stiffness_n_per_m) / s[1]).sqrt() / TAU;
+            (own / line_hz - 1.0).abs() < 1e-9
+        };
+        assert!(starts.iter().any(|s| at_line(&s)), "{line_hz}: {starts:?}");
+    }
+}
