@@ -18,7 +18,7 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// k and c are the members of the nominal model at the place. A force that drives the mass acts
 /// against the ground, not against the support.
 ///
-/// Reference: \[park-mold\], equation (4), for a mold on its support.
+/// Reference: `park-mold`, equation (4), for a mold on its support.
 pub(crate) struct FlexibleSupport;
 
 /// Name of the mass of the support.
