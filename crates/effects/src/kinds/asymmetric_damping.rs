@@ -1,6 +1,7 @@
 //! Damping that differs between the two directions of motion.
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -19,6 +20,8 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(forward, backward);
+
     fn force(&self, motion: MemberMotion) -> f64 {
         let damping = if motion.velocity > 0.0 {
             self.forward

@@ -1,6 +1,7 @@
 //! Play in a spring.
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::lanes;
 use simgap_model::{Location, Model, Spring, same_pair};
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
@@ -22,8 +23,10 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(stiffness, half_gap);
+
     fn force(&self, motion: MemberMotion) -> f64 {
-        -self.stiffness * motion.displacement.clamp(-self.half_gap, self.half_gap)
+        -self.stiffness * motion.displacement.max(-self.half_gap).min(self.half_gap)
     }
 }
 

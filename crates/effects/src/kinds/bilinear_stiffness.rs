@@ -1,6 +1,7 @@
 //! A spring that is stiffer on one side.
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -18,6 +19,8 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(change);
+
     fn force(&self, motion: MemberMotion) -> f64 {
         self.change * motion.displacement.max(0.0)
     }

@@ -1,6 +1,7 @@
 //! A constant force on a mass.
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -16,6 +17,8 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(force);
+
     /// A force on the mass is one its tie to the ground carries with the opposite sign.
     fn force(&self, _: MemberMotion) -> f64 {
         -self.force

@@ -1,6 +1,7 @@
 //! Dry friction of constant level.
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -16,6 +17,8 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(level);
+
     fn force(&self, _: MemberMotion) -> f64 {
         0.0
     }

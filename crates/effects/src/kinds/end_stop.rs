@@ -1,6 +1,7 @@
 //! A stop that the motion runs into.
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -21,6 +22,8 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(upper, lower, stiffness);
+
     fn force(&self, motion: MemberMotion) -> f64 {
         let beyond = (motion.displacement - self.upper).max(0.0)
             + (motion.displacement + self.lower).min(0.0);

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -23,9 +24,11 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(amplitude, omega, phase);
+
     /// Negative, for a member force pushes its first node back.
     fn force(&self, motion: MemberMotion) -> f64 {
-        -self.amplitude * (self.omega * motion.time_s + self.phase).sin()
+        -self.amplitude * elementary::sin(self.omega * motion.time_s + self.phase)
     }
 }
 

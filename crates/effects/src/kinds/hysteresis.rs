@@ -1,6 +1,7 @@
 //! A spring that remembers its way (Bouc-Wen).
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -96,6 +97,8 @@ fn power(size: f64, exponent: f64) -> f64 {
 }
 
 impl ForceLaw for Law {
+    lanes!(stiffness, yield_displacement, loop_share, exponent, start);
+
     fn force(&self, _: MemberMotion) -> f64 {
         self.stiffness * self.yield_displacement * self.start
     }

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -22,8 +23,10 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(sine, cosine, per_metre);
+
     fn force(&self, motion: MemberMotion) -> f64 {
-        let (sin, cos) = (self.per_metre * motion.displacement).sin_cos();
+        let (sin, cos) = elementary::sin_cos(self.per_metre * motion.displacement);
         self.sine * sin + self.cosine * cos
     }
 }

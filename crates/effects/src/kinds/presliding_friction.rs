@@ -1,6 +1,7 @@
 //! Friction that gives like a spring before it slides (Dahl).
 
-use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -26,6 +27,8 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(friction, stiffness, start);
+
     fn force(&self, _: MemberMotion) -> f64 {
         self.start * self.friction
     }
@@ -45,7 +48,7 @@ impl ForceLaw for Law {
             return (0.0, 0.0);
         }
         let level = self.friction.copysign(moved);
-        let decay = (-self.stiffness * moved.abs() / self.friction).exp();
+        let decay = elementary::exp(-self.stiffness * moved.abs() / self.friction);
         let force = if moved == 0.0 {
             memory
         } else {

@@ -1,6 +1,7 @@
 //! A spring force that grows with the square of the displacement, the same way on both sides.
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -16,6 +17,8 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(factor);
+
     fn force(&self, motion: MemberMotion) -> f64 {
         self.factor * motion.displacement * motion.displacement
     }

@@ -1,6 +1,7 @@
 //! Dry friction that falls from a break-away level to a sliding level.
 
-use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
+use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -21,13 +22,15 @@ struct Law {
 }
 
 impl ForceLaw for Law {
+    lanes!(sliding, excess, velocity);
+
     fn force(&self, _: MemberMotion) -> f64 {
         0.0
     }
 
     fn dry_level(&self, speed: f64) -> Option<f64> {
         let ratio = speed / self.velocity;
-        Some(self.sliding + self.excess * (-ratio * ratio).exp())
+        Some(self.sliding + self.excess * elementary::exp(-ratio * ratio))
     }
 }
 
