@@ -20,6 +20,9 @@ enum Task {
     DemoRecords(demo_records::DemoArgs),
     /// Diagnose generated cases whose effect is withheld, and score the answers
     BlindCheck(blind_check::Args),
+    /// Diagnose the case of a folder; started by blind-check, once for each case
+    #[command(hide = true)]
+    BlindWorker(blind_check::WorkerArgs),
     /// Write docs/effects.md from the catalogue of effects
     EffectsDocs(effects_docs::Args),
     /// Check the rules that keep the workspace in shape
@@ -32,6 +35,7 @@ fn main() -> ExitCode {
         Task::ReproducePaper(args) => reproduce::run(&args),
         Task::DemoRecords(args) => return demo(&args),
         Task::BlindCheck(args) => return blind_check::main(&args),
+        Task::BlindWorker(args) => return blind_check::worker_main(&args),
         Task::EffectsDocs(args) => return finish(effects_docs::run(&args)),
         Task::Tidy => return finish(tidy::run()),
     };

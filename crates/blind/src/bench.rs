@@ -14,12 +14,11 @@ pub const OVERSAMPLING: usize = 9;
 
 /// Maps with a memory of the signal: they see it finely sampled and from before the record starts.
 /// Every other map acts on the samples that are recorded.
-const WITH_MEMORY: &[&str] = &[
-    "sensor_delay",
-    "sensor_lag",
-    "alternating_timing",
-    "clock_skew",
-];
+const WITH_MEMORY: &[&str] = &["sensor_delay", "sensor_lag", "alternating_timing"];
+/// The map whose clock starts with the record and soon sees what comes after it.
+const RUNS_AHEAD: &str = "clock_skew";
+/// Motion after the end of the record, share of its length: no clock runs ahead further.
+const TAIL: f64 = 0.05;
 
 /// One record to be taken.
 #[derive(Debug, Clone)]
@@ -39,13 +38,20 @@ pub(crate) struct Bench {
     pub(crate) len: usize,
     /// Time stamp of the first sample of the record, s.
     pub(crate) start_s: f64,
+    /// Of the events of an effect that strikes at random, the share that does happen.
+    pub(crate) struck_share: f64,
 }
 
 impl Bench {
     /// The inputs finely sampled, the lead included, nothing measured.
     pub(crate) fn fine_run(&self, model: &Model) -> Run {
+        self.fine_run_until(model, self.len)
+    }
+
+    /// As [`Bench::fine_run`], to the given sample of the record.
+    fn fine_run_until(&self, model: &Model, end: usize) -> Run {
         let step = self.time_step_s / OVERSAMPLING as f64;
-        let len = (self.lead + self.len - 1) * OVERSAMPLING + 1;
+        let len = (self.lead + end - 1) * OVERSAMPLING + 1;
         let begins_s = -(self.lead as f64) * self.time_step_s;
         let sampled = |signal: &Signal| -> Vec<f64> {
             (0..len)
@@ -99,7 +105,13 @@ impl Bench {
             .iter()
             .map(|placed| placed.in_record(self.index))
             .partition(|placed| matches!(placed.action(), Action::Output(_) | Action::Sampling(_)));
-        let run = self.fine_run(model);
+        let is_ahead = chain.iter().any(|p| p.effect.kind() == RUNS_AHEAD);
+        let tail = if is_ahead {
+            TAIL * self.len as f64
+        } else {
+            0.0
+        };
+        let run = self.fine_run_until(model, self.len + tail as usize);
         let simulator = Simulator::new(model, &plant, refinement)?;
         let fine = simulator.predict(&run, &self.state(&simulator))?;
         Ok(fine
@@ -133,7 +145,8 @@ impl Bench {
         noise: Option<&Vec<f64>>,
     ) -> Vec<f64> {
         let here = |placed: &&Placed| placed.at == Location::Channel(channel.to_string());
-        let has_memory = |placed: &&Placed| WITH_MEMORY.contains(&placed.effect.kind());
+        let has_memory = |placed: &&&Placed| WITH_MEMORY.contains(&placed.effect.kind());
+        let runs_ahead = |placed: &&&Placed| placed.effect.kind() == RUNS_AHEAD;
         let apply = |values: &[f64], placed: &Placed, time_step_s: f64| {
             let mut random = Random::of_case(self.len as u64, self.index, 0);
             let struck = placed
@@ -141,7 +154,8 @@ impl Bench {
                 .strike(&placed.values, values, &mut || random.unit());
             match placed.action() {
                 Action::Output(_) | Action::Sampling(_) if struck.is_some() => {
-                    struck.unwrap_or_default()
+                    let struck = struck.unwrap_or_default();
+                    thinned(values, struck, self.struck_share, &mut random)
                 }
                 Action::Output(map) | Action::Sampling(map) => map.apply(Sampled {
                     start_s: self.start_s,
@@ -157,16 +171,16 @@ impl Bench {
         for placed in chain.iter().filter(|p| has_memory(p)) {
             fine = apply(&fine, placed, step);
         }
-        let mut sampled: Vec<f64> = fine
-            .iter()
-            .step_by(OVERSAMPLING)
-            .skip(self.lead)
-            .copied()
-            .collect();
+        let mut fine = fine.split_off(self.lead * OVERSAMPLING);
+        for placed in chain.iter().filter(|p| runs_ahead(p)) {
+            fine = apply(&fine, placed, step);
+        }
+        let sampled = fine.iter().step_by(OVERSAMPLING).take(self.len);
+        let mut sampled: Vec<f64> = sampled.copied().collect();
         if let Some(noise) = noise {
             sampled.iter_mut().zip(noise).for_each(|(y, e)| *y += e);
         }
-        for placed in chain.iter().filter(|p| !has_memory(p)) {
+        for placed in chain.iter().filter(|p| !has_memory(p) && !runs_ahead(p)) {
             sampled = apply(&sampled, placed, self.time_step_s);
         }
         sampled
@@ -191,5 +205,42 @@ impl Bench {
                 Ok(simulator.predict(&run, &state)?)
             })
             .collect()
+    }
+}
+
+/// Leaves out events, stretches where `struck` is not the signal, until the given share is left;
+/// a larger share has those of a smaller one, and one at least.
+fn thinned(signal: &[f64], mut struck: Vec<f64>, share: f64, random: &mut Random) -> Vec<f64> {
+    let (mut is_inside, mut is_kept, mut events) = (false, true, 0);
+    for (value, plain) in struck.iter_mut().zip(signal) {
+        let is_struck = value != plain;
+        if is_struck && !is_inside {
+            is_kept = random.chance(share) || events == 0;
+            events += 1;
+        }
+        is_inside = is_struck;
+        if !is_kept {
+            *value = *plain;
+        }
+    }
+    struck
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_fewer_events_are_some_of_the_many() {
+        let signal = vec![0.0; 40];
+        let struck: Vec<f64> = (0..40).map(|i| f64::from(i / 2 % 2)).collect();
+        let some = |share| thinned(&signal, struck.clone(), share, &mut Random::new(3));
+        assert_eq!(some(1.0), struck);
+        let (half, none) = (some(0.5), some(0.0));
+        assert_eq!(none.iter().sum::<f64>(), 2.0);
+        assert!((4.0..18.0).contains(&half.iter().sum::<f64>()));
+        assert!(half.iter().zip(&none).all(|(h, n)| h >= n));
+        // Whole events of two samples each.
+        assert!(half.chunks(2).all(|pair| pair[0] == pair[1]));
     }
 }

@@ -3,25 +3,20 @@
 use std::f64::consts::PI;
 
 use simgap_effects::{Effect, Family, Placed, find, sites};
-use simgap_model::Model;
+use simgap_model::{Location, Model};
 
 use crate::bench::Bench;
+use crate::equivalent::{equivalents, same_place};
+use crate::explained::is_explained;
 use crate::gap::{std, visible_gap};
 use crate::plant::Plant;
 use crate::random::Random;
 use crate::size::{factor_for, instance, scaled, site_scale};
-use crate::{BlindError, Recipe};
+use crate::{BlindError, Level};
 
-/// Smallest gap of an effect that matters, share of the channel's standard deviation.
-pub const SMALLEST_GAP: f64 = 0.03;
-/// Largest gap that is drawn.
-pub const LARGEST_GAP: f64 = 0.6;
-/// A gap must also be this many times the noise.
-pub const GAP_OVER_NOISE: f64 = 3.0;
-/// Gap of a foreign effect at least: what no catalogue entry explains must still be plain.
-const SMALLEST_FOREIGN_GAP: f64 = 0.15;
-/// Wrong parameters near a resonance make gaps above those drawn.
-const LARGEST_PARAMETER_GAP: f64 = 1.2;
+/// Share of the wanted range of gaps that is kept free at either end: the size is found on the first
+/// record and judged over all.
+const MARGIN: f64 = 1.2;
 /// Halving the truth's step may move it by this share of the noise, or of the channel if larger:
 /// no other program could predict a motion that depends on more.
 const REPRODUCIBLE: [f64; 2] = [0.3, 0.002];
@@ -34,6 +29,7 @@ pub(crate) struct Draft {
     pub(crate) effects: Vec<Placed>,
     pub(crate) gaps: Vec<f64>,
     pub(crate) noise_share: f64,
+    pub(crate) level: Level,
 }
 
 impl Draft {
@@ -64,9 +60,10 @@ pub(crate) fn deviations(random: &mut Random, model: &Model, most: f64) -> Vec<P
     placed
 }
 
-/// 8 to 30 % off, either way.
-fn wrong_factor(random: &mut Random) -> f64 {
-    let off = random.uniform(0.08, 0.30);
+/// A nominal parameter that is the cause: well off, either way.
+fn wrong_factor(random: &mut Random, level: Level) -> f64 {
+    let [least, most] = level.wrong();
+    let off = random.uniform(least, most);
     if random.chance(0.5) {
         1.0 + off
     } else {
@@ -74,63 +71,108 @@ fn wrong_factor(random: &mut Random) -> f64 {
     }
 }
 
-pub(crate) fn two_parameters(random: &mut Random, model: &Model) -> Option<Vec<Placed>> {
-    let mut all: Vec<Placed> = deviations(random, model, 0.0);
+/// Puts two nominal parameters well off; whether there are two.
+pub(crate) fn two_parameters(random: &mut Random, draft: &mut Draft) -> bool {
+    let mut all: Vec<Placed> = deviations(random, &draft.plant.model, 0.0);
     random.shuffle(&mut all);
     all.truncate(2);
     for placed in &mut all {
-        placed.values = vec![wrong_factor(random)];
+        placed.values = vec![wrong_factor(random, draft.level)];
     }
-    (all.len() == 2).then_some(all)
+    draft.effects = all;
+    draft.effects.len() == 2
 }
 
-/// Puts each effect at a random legal place, at a size that matters on the first record.
+/// Puts each effect at a random legal place, at a size that matters on the first record; whether
+/// there is such a place and size.
 pub(crate) fn place(
     random: &mut Random,
-    draft: &Draft,
-    recipe: &Recipe,
+    draft: &mut Draft,
     wanted: &[&'static dyn Effect],
     base: &[Vec<Vec<f64>>],
-) -> Result<Option<Vec<Placed>>, BlindError> {
-    let model = &draft.plant.model;
-    let bench = &draft.benches[0];
-    let free = bench.free_responses(model, &draft.deviations)?;
-    let mut effects = vec![];
+) -> Result<bool, BlindError> {
     for &effect in wanted {
+        let model = &draft.plant.model;
         let sites = sites(model, effect.site());
         let Some(at) = random.pick(&sites).cloned() else {
-            return Ok(None);
+            return Ok(false);
         };
-        let mut placed = Placed::new(effect, at, vec![wrong_factor(random)]);
-        if effect.family() != Family::NominalParameter {
-            let mut scale = site_scale(model, bench, &placed.at)?;
-            let [from_hz, to_hz] = draft.plant.band_hz;
-            let highest = (3.0 * to_hz).min(0.35 / bench.time_step_s);
-            scale
-                .lines_hz
-                .fill(random.log_uniform(0.5 * from_hz, highest));
-            scale.motion_hz[0] = random.log_uniform(from_hz, to_hz);
-            let instance = instance(random, effect, &scale);
-            placed.of_record = own_values(random, &placed, draft.benches.len());
-            let smallest = smallest_gap(recipe, draft.noise_share) * 1.2;
-            let target = random.log_uniform(smallest, LARGEST_GAP / 1.2);
-            let factor = factor_for(target, |factor| {
-                let mut all = draft.deviations.clone();
-                all.push(Placed {
-                    values: scaled(effect, &instance, factor),
-                    ..placed.clone()
-                });
-                let with = bench.outputs(model, &all, 1, None)?;
-                Ok(largest(&visible_gap(&with, &base[0], &free)))
-            })?;
-            let Some(factor) = factor else {
-                return Ok(None);
-            };
-            placed.values = scaled(effect, &instance, factor);
+        let mut known = draft.effects.iter();
+        if known.any(|known| are_one(known, effect, &at, model)) {
+            return Ok(false);
         }
-        effects.push(placed);
+        let mut placed = Placed::new(effect, at, vec![wrong_factor(random, draft.level)]);
+        if effect.family() != Family::NominalParameter && !sized(random, draft, &mut placed, base)?
+        {
+            return Ok(false);
+        }
+        draft.effects.push(placed);
     }
-    Ok(Some(effects))
+    Ok(true)
+}
+
+/// Draws an instance of the effect and finds the size at which its gap on the first record is one
+/// that is drawn; whether there is such a size. What strikes at random does so more or less often.
+fn sized(
+    random: &mut Random,
+    draft: &mut Draft,
+    placed: &mut Placed,
+    base: &[Vec<Vec<f64>>],
+) -> Result<bool, BlindError> {
+    let (model, effect) = (&draft.plant.model, placed.effect);
+    let mut bench = draft.benches[0].clone();
+    let mut scale = site_scale(model, &bench, &placed.at)?;
+    let [from_hz, to_hz] = draft.plant.band_hz;
+    let highest = (3.0 * to_hz).min(0.35 / bench.time_step_s);
+    scale
+        .lines_hz
+        .fill(random.log_uniform(0.5 * from_hz, highest));
+    scale.motion_hz[0] = random.log_uniform(from_hz, to_hz);
+    let instance = instance(random, effect, &scale);
+    if instance.is_empty() {
+        return Ok(false);
+    }
+    placed.of_record = own_values(random, placed, draft.benches.len());
+    let [smallest, largest_gap] = draft.level.gap();
+    let target = random.log_uniform(smallest * MARGIN, largest_gap / MARGIN);
+    let free = bench.free_responses(model, &draft.deviations)?;
+    let strikes = effect.strike(&instance, &[0.0, 1.0], &mut || 0.5).is_some();
+    let values = |factor: f64| {
+        if strikes {
+            instance.clone()
+        } else {
+            scaled(effect, &instance, factor)
+        }
+    };
+    let factor = factor_for(target, |factor| {
+        bench.struck_share = factor;
+        let mut all = draft.deviations.clone();
+        all.push(Placed {
+            values: values(factor),
+            ..placed.clone()
+        });
+        let with = bench.outputs(model, &all, 1, None)?;
+        Ok(largest(&visible_gap(&with, &base[0], &free)))
+    })?;
+    let Some(factor) = factor else {
+        return Ok(false);
+    };
+    placed.values = values(factor);
+    if strikes {
+        let benches = draft.benches.iter_mut();
+        benches.for_each(|bench| bench.struck_share = factor);
+    }
+    Ok(true)
+}
+
+/// Whether two effects of a pair would be one: a law beside a special case of it, or two that no data
+/// tell apart, of which only the sum counts.
+fn are_one(known: &Placed, effect: &dyn Effect, at: &Location, model: &Model) -> bool {
+    let [a, b] = [known.effect.kind(), effect.kind()];
+    let contained = known.effect.contains().contains(&b) || effect.contains().contains(&a);
+    let same = equivalents(a, &known.at, model);
+    (contained && same_place(&known.at, at))
+        || same.iter().any(|e| e.kind == b && same_place(&e.at, at))
 }
 
 /// The phases that the clock of an effect has in each record; what else a record has of its own is
@@ -149,15 +191,7 @@ fn own_values(random: &mut Random, placed: &Placed, records: usize) -> Vec<Vec<f
     (0..records).map(of_record).collect()
 }
 
-fn smallest_gap(recipe: &Recipe, noise_share: f64) -> f64 {
-    let matters = f64::max(SMALLEST_GAP, GAP_OVER_NOISE * noise_share);
-    match recipe {
-        Recipe::Foreign(_) => matters.max(SMALLEST_FOREIGN_GAP),
-        _ => matters,
-    }
-}
-
-fn largest(gaps: &[f64]) -> f64 {
+pub(crate) fn largest(gaps: &[f64]) -> f64 {
     // A NaN among them must not be overlooked.
     gaps.iter()
         .fold(0.0, |m, &g| if g.is_nan() || g > m { g } else { m })
@@ -176,12 +210,9 @@ pub(crate) fn outputs(
         .collect()
 }
 
-/// Whether every effect matters over all records, beside the others, and the truth is reproducible.
-pub(crate) fn accept(
-    draft: &mut Draft,
-    recipe: &Recipe,
-    base: &[Vec<Vec<f64>>],
-) -> Result<bool, BlindError> {
+/// Whether every effect matters over all records, beside the others, and goes by its own name, and
+/// the truth is reproducible.
+pub(crate) fn accept(draft: &mut Draft, base: &[Vec<Vec<f64>>]) -> Result<bool, BlindError> {
     if draft.effects.is_empty() {
         return Ok(true);
     }
@@ -189,12 +220,7 @@ pub(crate) fn accept(
     if !with.iter().flatten().flatten().all(|y| y.is_finite()) {
         return Ok(false);
     }
-    let upper = match recipe {
-        Recipe::Kind(kind) if is_nominal(kind) => LARGEST_PARAMETER_GAP,
-        Recipe::TwoParameters => LARGEST_PARAMETER_GAP,
-        _ => LARGEST_GAP,
-    };
-    let lower = smallest_gap(recipe, draft.noise_share);
+    let [lower, upper] = draft.level.gap();
     for i in 0..draft.effects.len() {
         let mut others = draft.all();
         others.remove(draft.deviations.len() + i);
@@ -204,39 +230,12 @@ pub(crate) fn accept(
             outputs(draft, &others, 1)?
         };
         let gap = gap_over_records(draft, &with, &without)?;
-        if !(lower..=upper).contains(&gap) {
+        if !(lower..=upper).contains(&gap) || is_explained(draft, i, &with, &without)? {
             return Ok(false);
-        }
-        for simpler in simpler(&draft.effects[i]) {
-            let mut instead = others.clone();
-            instead.push(simpler);
-            let apart = gap_over_records(draft, &with, &outputs(draft, &instead, 1)?)?;
-            if apart.is_nan() || apart < lower {
-                return Ok(false);
-            }
         }
         draft.gaps.push(gap);
     }
     reproducible(draft, &with)
-}
-
-/// Simpler laws of which the effect is a refinement: what it adds to them must matter too, or the
-/// simpler name would be the better answer.
-fn simpler(placed: &Placed) -> Vec<Placed> {
-    let coulomb = match placed.effect.kind() {
-        "stribeck_friction" => find("coulomb_friction"),
-        _ => None,
-    };
-    let levels = coulomb.map(|effect| {
-        let [sliding, breakaway] = [placed.values[0], placed.values[1]];
-        [sliding, 0.5 * (sliding + breakaway)]
-            .map(|level| Placed::new(effect, placed.at.clone(), vec![level]))
-    });
-    levels.into_iter().flatten().collect()
-}
-
-fn is_nominal(kind: &str) -> bool {
-    find(kind).is_some_and(|effect| effect.family() == Family::NominalParameter)
 }
 
 /// On the channel that shows it most, the root mean square of the gaps of the records.

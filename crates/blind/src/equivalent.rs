@@ -1,16 +1,19 @@
 //! The same thing by another name.
 
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 use simgap_model::{InputKind, Location, Model, OutputKind};
 
 /// What cannot be told from an effect on a plant, whatever the data.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Equivalent {
     /// Catalogue name.
     pub kind: String,
     /// Where it would act.
     pub at: Location,
     /// Why the two are the same.
-    pub because: &'static str,
+    pub because: Cow<'static, str>,
 }
 
 /// The effects of the catalogue that act on the outputs of this model exactly as `kind` at `at`.
@@ -70,7 +73,7 @@ pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> 
             found.push(Equivalent {
                 kind: other.to_string(),
                 at: place,
-                because,
+                because: because.into(),
             });
         }
     }
@@ -78,7 +81,7 @@ pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> 
         found.push(Equivalent {
             kind: "hysteresis".to_string(),
             at: at.clone(),
-            because: "Dahl's law is Bouc and Wen's with n = 1 and γ = 0",
+            because: "Dahl's law is Bouc and Wen's with n = 1 and γ = 0".into(),
         });
     }
     found

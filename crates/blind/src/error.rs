@@ -1,6 +1,7 @@
 //! Why a case cannot be generated.
 
 use simgap_model::ModelError;
+use simgap_mold::MoldError;
 use simgap_record::RecordError;
 use simgap_simulate::SimulateError;
 use thiserror::Error;
@@ -11,6 +12,9 @@ pub enum BlindError {
     /// A plant is not a model.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The mold of the paper is not a model.
+    #[error(transparent)]
+    Mold(#[from] MoldError),
     /// The truth cannot be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
@@ -36,5 +40,16 @@ pub enum BlindError {
         recipe: String,
         /// Draws tried.
         attempts: u64,
+    },
+    /// The truths cannot be written as text or read again.
+    #[error("sealed truths: {0}")]
+    Seal(#[source] serde_json::Error),
+    /// The truths are not those whose digest was published.
+    #[error("sealed truths: the digest is {found}, needed is the published {needed}")]
+    BrokenSeal {
+        /// Of the text.
+        found: String,
+        /// As published.
+        needed: String,
     },
 }

@@ -2,7 +2,8 @@
 //!
 //! [`schedule`] lists what a campaign holds, [`generate`] makes one case of it: a plant, its
 //! nominal model, two records to learn from and one to judge by, and the withheld [`Truth`].
-//! [`score()`] holds an [`Answer`] against it; [`Totals`] sums up a campaign.
+//! [`seal()`] lays the truths down before anything is diagnosed, [`open`] takes them up again.
+//! [`score()`] holds an [`Answer`] against a truth; [`Totals`] sums up a campaign.
 //!
 //! This crate knows nothing of the diagnosis, and the diagnosis nothing of it: whoever runs both
 //! hands over the model and the records and nothing else.
@@ -10,39 +11,49 @@
 //! ```text
 //! seed, recipe -> plant, excitations -> effect at a legal place, sized by its gap
 //!                                              |
-//!            fine simulation -> sampling -> noise -> records          truth
-//!                                                       |               |
-//!                                                  (diagnosis) ----> score
+//!            fine simulation -> sampling -> noise -> records      truth -> seal
+//!                                                       |                   |
+//!                                                  (diagnosis) -> score <- open
 //! ```
 
 mod bench;
 mod case;
+mod closing;
 mod draft;
 mod equivalent;
 mod error;
 mod excitation;
+mod explained;
 mod foreign;
 mod gap;
 mod generate;
+mod judge;
+mod level;
 mod plant;
 mod random;
 mod recipe;
 mod score;
+mod seal;
 mod size;
 mod table;
 mod totals;
 
 pub use bench::OVERSAMPLING;
-pub use case::{Case, Status, Truth};
-pub use draft::{GAP_OVER_NOISE, LARGEST_GAP, SMALLEST_GAP};
+pub use case::{Case, Hidden, Status, Truth};
+pub use closing::{Closing, Signals, gap_to};
 pub use equivalent::{Equivalent, equivalents};
 pub use error::BlindError;
 pub use foreign::foreign_effects;
 pub use generate::generate;
+pub use level::Level;
 pub use recipe::{Recipe, schedule};
-pub use score::{Answer, Named, Outcome, Score, Verdict, score};
-pub use table::{Style, render};
-pub use totals::{Bin, KindRow, Totals};
+pub use score::{Answer, First, Named, Outcome, Role, Score, Verdict, score};
+pub use seal::{SealedCase, open, seal, sha256};
+pub use table::{
+    Requirement, render_calibration, render_confusion, render_figures, render_requirements,
+    requirements,
+};
+pub use totals::{Bin, CLOSE, LARGEST_SET, Share, Spread, Totals};
 
 /// Seeds for setting thresholds of the diagnosis. Never used to report.
 pub const TUNE_SEEDS: std::ops::Range<u64> = 1..1000;

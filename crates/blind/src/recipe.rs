@@ -10,11 +10,13 @@ use crate::random::Random;
 /// What a case is made of.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Recipe {
-    /// The model is right; the gap is noise.
+    /// The model is right to the last digit; the gap is noise.
     Noise,
-    /// One catalogue kind at a random legal place. A nominal parameter is off by 8 to 30 %.
+    /// Every nominal parameter is off within the tolerance, nothing else.
+    SmallErrors,
+    /// One catalogue kind at a random legal place. A nominal parameter is well off.
     Kind(String),
-    /// Two nominal parameters, each off by 8 to 30 %.
+    /// Two nominal parameters, each well off.
     TwoParameters,
     /// Two kinds of the catalogue.
     Pair(String, String),
@@ -26,6 +28,7 @@ impl fmt::Display for Recipe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Recipe::Noise => f.write_str("noise only"),
+            Recipe::SmallErrors => f.write_str("small errors of the parameters"),
             Recipe::Kind(kind) | Recipe::Foreign(kind) => f.write_str(kind),
             Recipe::TwoParameters => f.write_str("two parameters"),
             Recipe::Pair(a, b) => write!(f, "{a} and {b}"),
@@ -35,10 +38,15 @@ impl fmt::Display for Recipe {
 
 /// The recipes of a campaign, in an order that gives nothing away.
 ///
-/// Of ten cases one is noise alone, one or two have wrong parameters, one has a pair of effects,
-/// one a foreign effect; the others go through the rest of the catalogue in turn. With `only`,
-/// every case has one of these kinds instead (`noise`, `two_parameters`, `pair` and `foreign` are
-/// accepted as well).
+/// | share | recipe |
+/// |---|---|
+/// | 18 of 25 | the catalogue in turn, one kind at a time |
+/// | 3 of 25 | a pair of kinds; every sixth two wrong parameters |
+/// | 2 of 25 | a foreign effect |
+/// | 2 of 25 | nothing: noise with exact parameters, noise with parameters within the tolerance |
+///
+/// With `only`, every case has one of these kinds instead (`noise`, `small_errors`,
+/// `two_parameters`, `pair` and `foreign` are accepted as well).
 ///
 /// # Errors
 /// [`BlindError::UnknownKind`] for a kind that does not exist.
@@ -55,17 +63,18 @@ pub fn schedule(seed: u64, count: usize, only: &[String]) -> Result<Vec<Recipe>,
     let mut recipes = Vec::with_capacity(count);
     for i in 0..count {
         let recipe = if only.is_empty() {
-            match i % 10 {
+            match i % PERIOD {
                 0 => Recipe::Noise,
-                1 if i % 30 == 21 => Recipe::TwoParameters,
-                1 => Recipe::Kind(lists.parameters.next()),
-                2 => lists.pair(&mut random),
-                3 => Recipe::Foreign(lists.foreign.next()),
-                _ => Recipe::Kind(lists.effects.next()),
+                1 => Recipe::SmallErrors,
+                2 | 3 => Recipe::Foreign(lists.foreign.next()),
+                4 if (i / PERIOD).is_multiple_of(2) => Recipe::TwoParameters,
+                4..=6 => lists.pair(&mut random),
+                _ => Recipe::Kind(lists.all.next()),
             }
         } else {
             match only[i % only.len()].as_str() {
                 "noise" => Recipe::Noise,
+                "small_errors" => Recipe::SmallErrors,
                 "two_parameters" => Recipe::TwoParameters,
                 "pair" => lists.pair(&mut random),
                 "foreign" => Recipe::Foreign(lists.foreign.next()),
@@ -87,8 +96,11 @@ pub fn schedule(seed: u64, count: usize, only: &[String]) -> Result<Vec<Recipe>,
     Ok(recipes)
 }
 
+/// Cases after which the shares repeat.
+const PERIOD: usize = 25;
+
 pub(crate) fn known_kinds() -> String {
-    let special = ["noise", "two_parameters", "pair", "foreign"];
+    let special = ["noise", "small_errors", "two_parameters", "pair", "foreign"];
     special
         .into_iter()
         .chain(catalogue().iter().map(|effect| effect.kind()))
@@ -116,31 +128,30 @@ impl Round {
 }
 
 struct Lists {
-    parameters: Round,
-    effects: Round,
+    /// Of the catalogue.
+    all: Round,
+    /// Of the catalogue without its nominal parameters.
+    effects: Vec<String>,
     foreign: Round,
 }
 
 impl Lists {
     fn new(random: &mut Random) -> Lists {
-        let of = |nominal: bool| -> Vec<String> {
-            catalogue()
-                .iter()
-                .filter(|effect| (effect.family() == Family::NominalParameter) == nominal)
-                .map(|effect| effect.kind().to_string())
-                .collect()
+        let names = |keep: &dyn Fn(Family) -> bool| -> Vec<String> {
+            let kept = catalogue().iter().filter(|effect| keep(effect.family()));
+            kept.map(|effect| effect.kind().to_string()).collect()
         };
         let foreign = crate::foreign_effects();
         let foreign = foreign.iter().map(|effect| effect.kind().to_string());
         Lists {
-            parameters: Round::new(random, of(true)),
-            effects: Round::new(random, of(false)),
+            all: Round::new(random, names(&|_| true)),
+            effects: names(&|family| family != Family::NominalParameter),
             foreign: Round::new(random, foreign.collect()),
         }
     }
 
     fn pair(&self, random: &mut Random) -> Recipe {
-        let kinds = &self.effects.kinds;
+        let kinds = &self.effects;
         let first = random.below(kinds.len());
         let second = (first + 1 + random.below(kinds.len() - 1)) % kinds.len();
         Recipe::Pair(kinds[first].clone(), kinds[second].clone())
@@ -152,15 +163,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn verify_schedule_covers_the_catalogue() -> Result<(), BlindError> {
-        let recipes = schedule(3, 200, &[])?;
+    fn verify_three_hundred_cases_hold_every_kind_several_times() -> Result<(), BlindError> {
+        let recipes = schedule(3, 300, &[])?;
+        let count = |wanted: &dyn Fn(&Recipe) -> bool| recipes.iter().filter(|r| wanted(r)).count();
         for effect in catalogue() {
             let recipe = Recipe::Kind(effect.kind().to_string());
-            assert!(recipes.contains(&recipe), "{recipe}");
+            assert!(count(&|r| *r == recipe) >= 4, "{recipe}");
         }
-        assert_eq!(recipes.iter().filter(|r| **r == Recipe::Noise).count(), 20);
-        assert_eq!(recipes, schedule(3, 200, &[])?);
-        assert_ne!(recipes, schedule(4, 200, &[])?);
+        assert_eq!(count(&|r| *r == Recipe::Noise), 12);
+        assert_eq!(count(&|r| *r == Recipe::SmallErrors), 12);
+        assert_eq!(count(&|r| *r == Recipe::TwoParameters), 6);
+        assert_eq!(count(&|r| matches!(r, Recipe::Pair(..))), 30);
+        assert_eq!(count(&|r| matches!(r, Recipe::Foreign(_))), 24);
+        assert_eq!(recipes, schedule(3, 300, &[])?);
+        assert_ne!(recipes, schedule(4, 300, &[])?);
         Ok(())
     }
 
@@ -172,7 +188,7 @@ mod tests {
             .unwrap_or_default();
         assert!(
             message.starts_with(
-                "recipe \"gremlins\": unknown kind, needed is one of: noise, two_parameters, pair, foreign, mass_error"
+                "recipe \"gremlins\": unknown kind, needed is one of: noise, small_errors, two_parameters, pair, foreign, mass_error"
             ),
             "{message}"
         );

@@ -2,8 +2,10 @@
 
 use simgap_model::Location;
 
+use crate::closing::{Closing, Signals, gap_to};
 use crate::equivalent::same_place;
-use crate::{Case, Status, Truth};
+use crate::judge::{hit, of_clean, of_effect, of_foreign};
+use crate::{Level, Status, Truth};
 
 /// What was answered, in plain types.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +16,24 @@ pub struct Answer {
     pub named: Vec<Named>,
     /// Share of the gap that is closed, 1 for all of it.
     pub closed: f64,
+    /// Predictions of the nominal model.
+    pub nominal: Signals,
+    /// Predictions of the corrected model.
+    pub corrected: Signals,
+}
+
+impl Answer {
+    /// That of a diagnosis that gave none.
+    #[must_use]
+    pub fn nothing() -> Answer {
+        Answer {
+            status: Status::None,
+            named: vec![],
+            closed: 0.0,
+            nominal: vec![],
+            corrected: vec![],
+        }
+    }
 }
 
 /// A named effect.
@@ -27,6 +47,8 @@ pub struct Named {
     pub probability: f64,
     /// What the answer says cannot be told from it.
     pub indistinguishable: Vec<(String, Location)>,
+    /// The answer says that it only stands in for a law that the catalogue does not have.
+    pub stand_in: bool,
 }
 
 /// What became of one effect of the truth; from best to worst.
@@ -40,6 +62,9 @@ pub enum Outcome {
     Quiet,
     /// Not in the catalogue, and said to be unknown.
     HonestUnknown,
+    /// Not in the catalogue, and one of its family is named, which predicts the check records and is
+    /// said to be a stand-in.
+    StandIn,
     /// Among what the answer says cannot be told from a named effect.
     AmongRivals,
     /// Right kind, wrong place.
@@ -63,6 +88,7 @@ impl Outcome {
             Outcome::Equivalent => "equivalent",
             Outcome::Quiet => "quiet",
             Outcome::HonestUnknown => "honest unknown",
+            Outcome::StandIn => "stand-in",
             Outcome::AmongRivals => "among rivals",
             Outcome::WrongPlace => "wrong place",
             Outcome::CalledUnknown => "called unknown",
@@ -77,7 +103,11 @@ impl Outcome {
     pub fn is_right(self) -> bool {
         matches!(
             self,
-            Outcome::Right | Outcome::Equivalent | Outcome::Quiet | Outcome::HonestUnknown
+            Outcome::Right
+                | Outcome::Equivalent
+                | Outcome::Quiet
+                | Outcome::HonestUnknown
+                | Outcome::StandIn
         )
     }
 }
@@ -85,7 +115,7 @@ impl Outcome {
 /// One effect of the truth and what was said of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
-    /// Kind of the truth; `none` for noise alone.
+    /// Kind of the truth; `none, exact` or `none, small errors` for noise alone.
     pub kind: String,
     /// Its place, if it has one.
     pub at: Option<Location>,
@@ -98,32 +128,81 @@ pub struct Verdict {
     pub said: String,
 }
 
+/// What a case asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// One effect of the catalogue.
+    Single,
+    /// Two of them.
+    Pair,
+    /// None.
+    Clean,
+    /// One that the catalogue does not have.
+    Foreign,
+    /// One whose kind is taken out of the catalogue.
+    Withheld,
+}
+
+impl Role {
+    fn of(truth: &Truth) -> Role {
+        match (truth.status, truth.withheld, truth.effects.len()) {
+            (_, true, _) => Role::Withheld,
+            (Status::Unknown, ..) => Role::Foreign,
+            (Status::None, ..) => Role::Clean,
+            (_, _, 1) => Role::Single,
+            _ => Role::Pair,
+        }
+    }
+}
+
+/// The effect that is named first, held against the only effect of the truth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct First {
+    /// It is of the true kind.
+    pub is_kind: bool,
+    /// It is of the true kind, or of one that no data tell from it on this plant.
+    pub is_same: bool,
+    /// It is of the true kind, and at its place, or at one that no data tell from it.
+    pub is_placed: bool,
+    /// The true kind is among what is said to be indistinguishable from it.
+    pub is_declared: bool,
+    /// Different kinds in the set of it and what is said to be indistinguishable from it.
+    pub set: usize,
+}
+
 /// The score of one case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Score {
     /// Number of the case.
     pub name: String,
+    /// How hard it is.
+    pub level: Level,
+    /// What it asks for.
+    pub role: Role,
     /// Right kind of answer.
     pub truth: Status,
     /// Kind of answer given.
     pub answer: Status,
     /// One for each effect of the truth; one for noise alone.
     pub verdicts: Vec<Verdict>,
+    /// What is named first, for [`Role::Single`] and an answer that names something.
+    pub first: Option<First>,
     /// Probability stated for each named effect, and whether it was right.
     pub stated: Vec<(f64, bool)>,
-    /// Length of each list of what cannot be told apart.
-    pub rivals: Vec<usize>,
     /// Named effects that are neither in the truth nor excused by small parameter errors.
     pub extra: Vec<String>,
-    /// Closed share of the gap, as answered.
-    pub closed: f64,
+    /// Closed share of the gap, where there is one.
+    pub closing: Option<Closing>,
+    /// The nominal parameters are right to the last digit.
+    pub is_exact: bool,
 }
 
 impl Score {
     /// Whether the whole answer is right: every effect, and nothing besides.
     #[must_use]
     pub fn is_right(&self) -> bool {
-        self.extra.is_empty() && self.verdicts.iter().all(|v| v.outcome.is_right())
+        let foreign = matches!(self.role, Role::Foreign | Role::Withheld);
+        (foreign || self.extra.is_empty()) && self.verdicts.iter().all(|v| v.outcome.is_right())
     }
 
     /// The worst of the outcomes.
@@ -137,162 +216,103 @@ impl Score {
     }
 }
 
-/// Holds an answer against the truth of its case.
+/// Holds an answer against the truth of its case. `best` are the predictions of the model with the
+/// true effects and parameters.
 ///
 /// An effect of the truth is `Right` when it is named at its place, `Equivalent` when one of its
 /// [`crate::equivalents`] is. Named nominal parameters beside the effect are excused where the case
 /// has small errors of them ([`Truth::deviations`]).
 ///
 /// ```
-/// use simgap_blind::{Answer, Outcome, Recipe, Status, generate, score};
-/// let case = generate(1, 3, &Recipe::Noise)?;
-/// let answer = Answer { status: Status::None, named: vec![], closed: 1.0 };
-/// assert_eq!(score(&case, &answer).outcome(), Outcome::Quiet);
+/// use simgap_blind::{Answer, Level, Outcome, Recipe, generate, score};
+/// let case = generate(1, 3, &Recipe::Noise, Level::Standard)?;
+/// let score = score(&case.name, &case.truth, &Answer::nothing(), None);
+/// assert_eq!(score.outcome(), Outcome::Quiet);
 /// # Ok::<(), simgap_blind::BlindError>(())
 /// ```
 #[must_use]
-pub fn score(case: &Case, answer: &Answer) -> Score {
-    let truth = &case.truth;
+pub fn score(name: &str, truth: &Truth, answer: &Answer, best: Option<&Signals>) -> Score {
     let names = matches!(answer.status, Status::Parameters | Status::Effect);
     let named: &[Named] = if names { &answer.named } else { &[] };
     let hits: Vec<Option<usize>> = named.iter().map(|named| hit(truth, named)).collect();
+    let closing = closing(truth, answer, best);
+    let role = Role::of(truth);
+    let unexcused: Vec<&Named> = named.iter().filter(|n| !is_excused(truth, n)).collect();
     let verdicts = match truth.status {
-        Status::None => vec![of_noise(answer.status, named)],
-        Status::Unknown => vec![of_foreign(truth, answer.status, named)],
+        Status::None => vec![of_clean(truth, answer.status, named)],
+        Status::Unknown => {
+            let closed = closing.map_or(f64::NAN, |closing| closing.actual);
+            vec![of_foreign(truth, answer.status, &unexcused, closed)]
+        }
         Status::Parameters | Status::Effect => (0..truth.effects.len())
             .map(|i| of_effect(truth, i, answer.status, named, &hits))
             .collect(),
     };
-    let excused = |named: &Named| {
-        let same =
-            |e: &simgap_model::EffectEntry| e.kind == named.kind && same_place(&e.at, &named.at);
-        truth.deviations.iter().any(same)
+    let counted = || {
+        let all = named.iter().zip(&hits);
+        all.filter(|(named, hit)| hit.is_some() || !is_excused(truth, named))
     };
-    let spare = |(named, hit): &(&Named, &Option<usize>)| hit.is_none() && !excused(named);
     Score {
-        name: case.name.clone(),
+        name: name.to_string(),
+        level: truth.level,
+        role,
         truth: truth.status,
         answer: answer.status,
         verdicts,
-        stated: named
-            .iter()
-            .zip(&hits)
-            .filter(|(named, hit)| hit.is_some() || !excused(named))
+        first: match (role, named.first()) {
+            (Role::Single, Some(first)) => Some(first_named(truth, first, hits[0])),
+            _ => None,
+        },
+        stated: counted()
             .map(|(named, hit)| (named.probability, hit.is_some()))
             .collect(),
-        rivals: named.iter().map(|n| n.indistinguishable.len()).collect(),
-        extra: named
-            .iter()
-            .zip(&hits)
-            .filter(spare)
+        extra: counted()
+            .filter(|(_, hit)| hit.is_none())
             .map(|(named, _)| format!("{} {}", named.kind, named.at))
             .collect(),
-        closed: answer.closed,
+        closing,
+        is_exact: truth.deviations.is_empty(),
     }
 }
 
-/// Which effect of the truth a named one stands for.
-fn hit(truth: &Truth, named: &Named) -> Option<usize> {
-    if truth.status == Status::Unknown {
+/// Whether a named effect is a small error that the parameters do have.
+fn is_excused(truth: &Truth, named: &Named) -> bool {
+    let mut small = truth.deviations.iter();
+    small.any(|e| e.kind == named.kind && same_place(&e.at, &named.at))
+}
+
+fn first_named(truth: &Truth, first: &Named, hit: Option<usize>) -> First {
+    let kind = truth.effects.first().map_or("", |effect| &effect.kind);
+    let mut kinds: Vec<&str> = vec![&first.kind];
+    kinds.extend(
+        first
+            .indistinguishable
+            .iter()
+            .map(|(kind, _)| kind.as_str()),
+    );
+    let is_declared = kinds.contains(&kind);
+    kinds.sort_unstable();
+    kinds.dedup();
+    First {
+        is_kind: first.kind == kind,
+        is_same: first.kind == kind || hit.is_some(),
+        is_placed: first.kind == kind && hit.is_some(),
+        is_declared,
+        set: kinds.len(),
+    }
+}
+
+fn closing(truth: &Truth, answer: &Answer, best: Option<&Signals>) -> Option<Closing> {
+    if truth.status == Status::None {
         return None;
     }
-    let exact = truth
-        .effects
-        .iter()
-        .position(|e| e.kind == named.kind && same_place(&e.at, &named.at));
-    exact.or_else(|| {
-        truth.equivalents.iter().position(|list| {
-            list.iter()
-                .any(|e| e.kind == named.kind && same_place(&e.at, &named.at))
-        })
+    let nominal = gap_to(&truth.signals, &answer.nominal);
+    let closed = |predicted: &Signals| 1.0 - gap_to(&truth.signals, predicted) / nominal;
+    let actual = closed(&answer.corrected);
+    Some(Closing {
+        stated: answer.closed,
+        // No prediction closes nothing.
+        actual: if actual.is_finite() { actual } else { 0.0 },
+        best: best.map_or(f64::NAN, closed),
     })
-}
-
-fn of_noise(status: Status, named: &[Named]) -> Verdict {
-    Verdict {
-        kind: "none".to_string(),
-        at: None,
-        outcome: if status == Status::None {
-            Outcome::Quiet
-        } else {
-            Outcome::FalseAlarm
-        },
-        probability: 0.0,
-        said: said(status, named.iter()),
-    }
-}
-
-fn of_foreign(truth: &Truth, status: Status, named: &[Named]) -> Verdict {
-    let first = truth.effects.first();
-    Verdict {
-        kind: first.map_or_else(String::new, |e| e.kind.clone()),
-        at: first.map(|e| e.at.clone()),
-        outcome: match status {
-            Status::Unknown => Outcome::HonestUnknown,
-            Status::None => Outcome::Missed,
-            Status::Parameters | Status::Effect => Outcome::Wrong,
-        },
-        probability: 0.0,
-        said: said(status, named.iter()),
-    }
-}
-
-fn of_effect(
-    truth: &Truth,
-    i: usize,
-    status: Status,
-    named: &[Named],
-    hits: &[Option<usize>],
-) -> Verdict {
-    let effect = &truth.effects[i];
-    let of_mine = |n: &&Named| n.kind == effect.kind && same_place(&n.at, &effect.at);
-    let mine = named
-        .iter()
-        .zip(hits)
-        .filter(|(_, hit)| **hit == Some(i))
-        .map(|(named, _)| named)
-        .max_by(|a, b| {
-            let exact = |n: &&Named| u8::from(of_mine(n));
-            exact(a)
-                .cmp(&exact(b))
-                .then(a.probability.total_cmp(&b.probability))
-        });
-    let spare = || named.iter().zip(hits).filter(|(_, hit)| hit.is_none());
-    let rival = || {
-        named.iter().any(|n| {
-            n.indistinguishable
-                .iter()
-                .any(|(kind, at)| *kind == effect.kind && same_place(at, &effect.at))
-        })
-    };
-    let outcome = match (mine, status) {
-        (Some(named), _) if of_mine(&named) => Outcome::Right,
-        (Some(_), _) => Outcome::Equivalent,
-        (None, Status::None) => Outcome::Missed,
-        (None, Status::Unknown) => Outcome::CalledUnknown,
-        (None, _) if rival() => Outcome::AmongRivals,
-        (None, _) if spare().any(|(n, _)| n.kind == effect.kind) => Outcome::WrongPlace,
-        // The other effect of a pair is all that was found.
-        (None, _) if spare().next().is_none() => Outcome::Missed,
-        (None, _) => Outcome::Wrong,
-    };
-    Verdict {
-        kind: effect.kind.clone(),
-        at: Some(effect.at.clone()),
-        outcome,
-        probability: mine.map_or(0.0, |named| named.probability),
-        said: mine.map_or_else(
-            || said(status, spare().map(|(named, _)| named)),
-            |named| named.kind.clone(),
-        ),
-    }
-}
-
-fn said<'a>(status: Status, named: impl Iterator<Item = &'a Named>) -> String {
-    let most = named.max_by(|a, b| a.probability.total_cmp(&b.probability));
-    match (status, most) {
-        (Status::Unknown, _) => "(unknown)".to_string(),
-        (_, Some(named)) => named.kind.clone(),
-        (_, None) => "(nothing)".to_string(),
-    }
 }

@@ -141,13 +141,9 @@ pub(crate) fn scaled(effect: &dyn Effect, instance: &[f64], factor: f64) -> Vec<
     within_bounds(effect, values)
 }
 
-fn within_bounds(effect: &dyn Effect, values: Vec<f64>) -> Vec<f64> {
-    effect
-        .parameters()
-        .iter()
-        .zip(values)
-        .map(|(parameter, value)| value.clamp(parameter.lower, parameter.upper))
-        .collect()
+fn within_bounds(effect: &dyn Effect, mut values: Vec<f64>) -> Vec<f64> {
+    effect.make_physical(&mut values);
+    values
 }
 
 /// Relative accuracy of the size: a case needs a gap of about the size drawn, no more.
@@ -230,7 +226,10 @@ mod tests {
     fn prop_an_effect_scaled_to_nothing_is_neutral() {
         let scale = SiteScale {
             signal: 2.0,
+            signal_step: 0.2,
             duration_s: 10.0,
+            lines_hz: [3.0; simgap_effects::LINES],
+            motion_hz: [2.0; simgap_effects::LINES],
             ..SiteScale::plain(1e-3, 0.1, 50.0)
         };
         for &effect in simgap_effects::catalogue() {

@@ -2,10 +2,82 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Outcome, Score, Status};
+use crate::{Outcome, Role, Score};
 
 /// Edges of the bins of stated probabilities.
 const BINS: [f64; 7] = [0.0, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0];
+/// Largest set of kinds that an answer may leave undecided.
+pub const LARGEST_SET: usize = 3;
+/// A stated closing this near to the true one is right.
+pub const CLOSE: f64 = 0.05;
+
+/// So many of so many.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Share {
+    /// That are right.
+    pub hits: usize,
+    /// Of these.
+    pub of: usize,
+}
+
+impl Share {
+    /// Counts what is true.
+    pub fn count(of: impl Iterator<Item = bool>) -> Share {
+        of.fold(Share::default(), |share, hit| Share {
+            hits: share.hits + usize::from(hit),
+            of: share.of + 1,
+        })
+    }
+
+    /// 0 to 1; NaN of nothing.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        self.hits as f64 / self.of as f64
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn and(self, other: Share) -> Share {
+        Share {
+            hits: self.hits + other.hits,
+            of: self.of + other.of,
+        }
+    }
+}
+
+/// Median and 10th percentile of some values; NaN of none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// How many values.
+    pub count: usize,
+    /// Half of them are above.
+    pub median: f64,
+    /// Nine of ten are above.
+    pub tenth: f64,
+}
+
+impl Spread {
+    /// Of values in any order, by linear interpolation between the two nearest ranks. A value that
+    /// is no number is left out.
+    #[must_use]
+    pub fn of(mut values: Vec<f64>) -> Spread {
+        values.retain(|value| !value.is_nan());
+        values.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let position = share * values.len().saturating_sub(1) as f64;
+            let low = position.floor() as usize;
+            let value = |i: usize| values.get(i).or(values.last()).copied();
+            let (a, b) = (value(low), value(low + 1));
+            let (a, b) = (a.unwrap_or(f64::NAN), b.unwrap_or(f64::NAN));
+            a + (position - low as f64) * (b - a)
+        };
+        Spread {
+            count: values.len(),
+            median: at(0.5),
+            tenth: at(0.1),
+        }
+    }
+}
 
 /// Stated probabilities of one bin and how often they were right.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,56 +94,55 @@ pub struct Bin {
     pub right: f64,
 }
 
-/// The figures of a campaign. A share over nothing is NaN and written as a dash.
+/// The figures of the cases of one level. A share over nothing is NaN and written as a dash.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Totals {
     /// Cases.
     pub cases: usize,
     /// Cases whose whole answer is right.
-    pub right: f64,
-    /// Effects of the catalogue in all cases; the next seven are shares of them.
-    pub effects: usize,
-    /// Kind and place named, or an equivalent.
-    pub placed: f64,
-    /// Kind named, or an equivalent, wherever.
-    pub named: f64,
-    /// Truth among what was said to be indistinguishable.
-    pub among_rivals: f64,
-    /// Something else named.
-    pub wrong: f64,
-    /// Said to be noise, or left out.
-    pub missed: f64,
-    /// Said to be unknown.
-    pub called_unknown: f64,
-    /// Mean probability stated for the truth.
-    pub truth_probability: f64,
-    /// Cases of noise alone, and the share of them with an alarm.
-    pub quiet_cases: usize,
-    /// As above.
-    pub false_alarms: f64,
-    /// Foreign cases, and the share of them said to be unknown.
-    pub foreign_cases: usize,
-    /// As above.
-    pub honest_unknown: f64,
-    /// Cases with a named effect that is not there.
-    pub extra: f64,
+    pub right: Share,
+    /// One effect: its kind is named first.
+    pub first: Share,
+    /// One effect: its kind, or one that no data tell from it on that plant, is named first.
+    pub first_or_same: Share,
+    /// One effect: its kind is named first or declared indistinguishable from the first, in a set of
+    /// at most [`LARGEST_SET`] kinds.
+    pub declared: Share,
+    /// Mean number of kinds in the set of the first and what is declared indistinguishable from it.
+    pub set_mean: f64,
+    /// Largest of them.
+    pub set_max: usize,
+    /// One effect whose kind is named first: at its place.
+    pub placed: Share,
+    /// Noise alone with exact parameters, nothing blamed.
+    pub exact: Share,
+    /// Noise alone with small errors of the parameters, nothing blamed but parameters.
+    pub small_errors: Share,
+    /// A foreign effect that is said to be unknown, or stood in for.
+    pub foreign: Share,
+    /// A kind out of the catalogue that is said to be unknown, stood in for, or named by another
+    /// name of the same law.
+    pub withheld: Share,
+    /// Of both: honestly unknown, stand-in, the same law by another name.
+    pub foreign_how: [usize; 3],
+    /// Two effects: both named at their places, none invented.
+    pub pairs: Share,
+    /// Effects of pairs that are named at their places.
+    pub of_pairs: Share,
+    /// Closed share of the gap against the truth without noise, where the catalogue can close it.
+    pub closing: Spread,
+    /// The same of the model with the true effects and parameters.
+    pub best: Spread,
+    /// What the answers close of what the true model closes.
+    pub of_best: Spread,
+    /// Stated closings within [`CLOSE`] of the true one.
+    pub stated: Share,
     /// Mean of (stated probability − right or not)² over all statements.
     pub brier: f64,
     /// Stated probabilities against how often they were right.
     pub calibration: Vec<Bin>,
-    /// Mean number of effects that an answer says cannot be told from a named one.
-    pub rivals: f64,
-    /// True kind, outcomes and what was said, with counts.
-    pub kinds: BTreeMap<String, KindRow>,
-}
-
-/// One kind of the truth.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct KindRow {
-    /// How often each outcome.
-    pub outcomes: BTreeMap<Outcome, usize>,
-    /// How often each kind was said instead.
-    pub said: BTreeMap<String, usize>,
+    /// Truth by what was said, with counts; what is right in parts is under its own name.
+    pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
 }
 
 impl Totals {
@@ -83,58 +154,74 @@ impl Totals {
     /// ```
     #[must_use]
     pub fn of(scores: &[Score]) -> Totals {
-        let verdicts: Vec<_> = scores
+        let of_role = |role: Role| scores.iter().filter(move |score| score.role == role);
+        let single = |hit: &dyn Fn(&crate::First) -> bool| {
+            Share::count(of_role(Role::Single).map(|s| s.first.as_ref().is_some_and(hit)))
+        };
+        let firsts = || of_role(Role::Single).filter_map(|score| score.first);
+        let clean = |is_exact: bool| {
+            let such = of_role(Role::Clean).filter(move |s| is_exact == s.is_exact);
+            Share::count(such.map(Score::is_right))
+        };
+        let foreign = || of_role(Role::Foreign).chain(of_role(Role::Withheld));
+        let how = |outcome: Outcome| foreign().filter(|s| s.outcome() == outcome).count();
+        let found = |outcome: Outcome| matches!(outcome, Outcome::Right | Outcome::Equivalent);
+        let of_pairs = of_role(Role::Pair).flat_map(|score| &score.verdicts);
+        let closable = || of_role(Role::Single).chain(of_role(Role::Pair));
+        let closings = || closable().filter_map(|score| score.closing);
+        let told = scores.iter().filter_map(|score| score.closing);
+        let statements: Vec<(f64, bool)> = scores
             .iter()
-            .filter(|score| matches!(score.truth, Status::Parameters | Status::Effect))
-            .flat_map(|score| &score.verdicts)
+            .filter(|score| score.role != Role::Withheld)
+            .flat_map(|score| score.stated.clone())
             .collect();
-        let of_effects = |outcomes: &[Outcome]| {
-            let hits = verdicts.iter().filter(|v| outcomes.contains(&v.outcome));
-            share(hits.count(), verdicts.len())
-        };
-        let of_status = |status: Status, outcome: Outcome| {
-            let such: Vec<_> = scores.iter().filter(|s| s.truth == status).collect();
-            let hits = such.iter().filter(|s| s.outcome() == outcome).count();
-            (such.len(), share(hits, such.len()))
-        };
-        let (quiet_cases, false_alarms) = of_status(Status::None, Outcome::FalseAlarm);
-        let (foreign_cases, honest_unknown) = of_status(Status::Unknown, Outcome::HonestUnknown);
-        let stated: Vec<(f64, bool)> = scores.iter().flat_map(|s| s.stated.clone()).collect();
-        let errors = stated.iter().map(|&(p, right)| (p - of(right)).powi(2));
-        let rivals = scores.iter().flat_map(|s| &s.rivals).map(|&n| n as f64);
         Totals {
             cases: scores.len(),
-            right: share(scores.iter().filter(|s| s.is_right()).count(), scores.len()),
-            effects: verdicts.len(),
-            placed: of_effects(&[Outcome::Right, Outcome::Equivalent]),
-            named: of_effects(&[Outcome::Right, Outcome::Equivalent, Outcome::WrongPlace]),
-            among_rivals: of_effects(&[Outcome::AmongRivals]),
-            wrong: of_effects(&[Outcome::Wrong]),
-            missed: of_effects(&[Outcome::Missed]),
-            called_unknown: of_effects(&[Outcome::CalledUnknown]),
-            truth_probability: mean(verdicts.iter().map(|v| v.probability)),
-            quiet_cases,
-            false_alarms,
-            foreign_cases,
-            honest_unknown,
-            extra: share(
-                scores.iter().filter(|s| !s.extra.is_empty()).count(),
-                scores.len(),
-            ),
-            brier: mean(errors),
-            calibration: calibration(&stated),
-            rivals: mean(rivals),
-            kinds: kinds(scores),
+            right: Share::count(scores.iter().map(Score::is_right)),
+            first: single(&|first| first.is_kind),
+            first_or_same: single(&|first| first.is_same),
+            declared: single(&|first| {
+                (first.is_kind || first.is_declared) && first.set <= LARGEST_SET
+            }),
+            set_mean: mean(firsts().map(|first| first.set as f64)),
+            set_max: firsts().map(|first| first.set).max().unwrap_or(0),
+            placed: Share::count(firsts().filter(|f| f.is_kind).map(|f| f.is_placed)),
+            exact: clean(true),
+            small_errors: clean(false),
+            foreign: Share::count(of_role(Role::Foreign).map(Score::is_right)),
+            withheld: Share::count(of_role(Role::Withheld).map(Score::is_right)),
+            foreign_how: [
+                how(Outcome::HonestUnknown),
+                how(Outcome::StandIn),
+                how(Outcome::Equivalent),
+            ],
+            pairs: Share::count(of_role(Role::Pair).map(Score::is_right)),
+            of_pairs: Share::count(of_pairs.map(|verdict| found(verdict.outcome))),
+            closing: Spread::of(closings().map(|c| c.actual).collect()),
+            best: Spread::of(closings().map(|c| c.best).collect()),
+            of_best: Spread::of(closings().map(|c| c.actual / c.best).collect()),
+            stated: Share::count(told.map(|c| (c.stated - c.actual).abs() <= CLOSE)),
+            brier: mean(statements.iter().map(|&(p, hit)| (p - number(hit)).powi(2))),
+            calibration: calibration(&statements),
+            confusion: confusion(scores),
         }
+    }
+
+    /// Noise alone of both kinds.
+    #[must_use]
+    pub fn clean(&self) -> Share {
+        self.exact.and(self.small_errors)
+    }
+
+    /// Foreign effects and kinds out of the catalogue.
+    #[must_use]
+    pub fn unknowable(&self) -> Share {
+        self.foreign.and(self.withheld)
     }
 }
 
-fn of(right: bool) -> f64 {
-    f64::from(u8::from(right))
-}
-
-fn share(hits: usize, of: usize) -> f64 {
-    hits as f64 / of as f64
+fn number(hit: bool) -> f64 {
+    f64::from(u8::from(hit))
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -155,20 +242,38 @@ fn calibration(stated: &[(f64, bool)]) -> Vec<Bin> {
                 to: edge[1],
                 count: inside.len(),
                 stated: mean(inside.iter().map(|(p, _)| *p)),
-                right: mean(inside.iter().map(|(_, right)| of(*right))),
+                right: mean(inside.iter().map(|(_, right)| number(*right))),
             }
         })
         .collect()
 }
 
-fn kinds(scores: &[Score]) -> BTreeMap<String, KindRow> {
-    let mut rows: BTreeMap<String, KindRow> = BTreeMap::new();
-    for verdict in scores.iter().flat_map(|score| &score.verdicts) {
-        let row = rows.entry(verdict.kind.clone()).or_default();
-        *row.outcomes.entry(verdict.outcome).or_default() += 1;
-        if !verdict.outcome.is_right() {
-            *row.said.entry(verdict.said.clone()).or_default() += 1;
+fn confusion(scores: &[Score]) -> BTreeMap<String, BTreeMap<String, usize>> {
+    let mut rows: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
+    for score in scores {
+        for verdict in &score.verdicts {
+            let truth = match score.role {
+                Role::Withheld => format!("{} (withheld)", verdict.kind),
+                Role::Pair => format!("{} (of two)", verdict.kind),
+                _ => verdict.kind.clone(),
+            };
+            let row = rows.entry(truth).or_default();
+            *row.entry(verdict.said.clone()).or_default() += 1;
         }
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_percentiles_between_ranks() {
+        let spread = Spread::of((0..=10).rev().map(f64::from).collect());
+        assert_eq!((spread.count, spread.median, spread.tenth), (11, 5.0, 1.0));
+        let two = Spread::of(vec![1.0, f64::NAN, 0.0]);
+        assert_eq!((two.count, two.median, two.tenth), (2, 0.5, 0.1));
+        assert!(Spread::of(vec![]).median.is_nan());
+    }
 }

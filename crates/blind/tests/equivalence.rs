@@ -1,7 +1,7 @@
 //! The table of equivalents, held against simulations.
 #![allow(clippy::unwrap_used)]
 
-use simgap_blind::{Recipe, Status, equivalents, generate};
+use simgap_blind::{Level, Recipe, Status, equivalents, generate};
 use simgap_effects::{Action, Placed, Sampled, find};
 use simgap_model::{Location, Model};
 use simgap_simulate::{Run, Simulator};
@@ -168,7 +168,7 @@ fn verify_conditions_keep_the_table_short() {
 #[test]
 fn verify_truth_carries_the_equivalents_of_its_effects() {
     let case = (0..20)
-        .map(|n| generate(9, n, &Recipe::Kind("input_gain".into())).unwrap())
+        .map(|n| generate(9, n, &Recipe::Kind("input_gain".into()), Level::Standard).unwrap())
         .find(|case| {
             case.model.inputs.len() == 1
                 && case.model.outputs.len() == 1
@@ -184,7 +184,7 @@ fn verify_an_effect_beside_changes_what_is_equivalent() {
     // A free axis keeps a force and a bias apart; the spring it lacked makes them one.
     let recipe = Recipe::Pair("constant_force".into(), "linear_stiffness".into());
     let case = (0..40)
-        .map(|n| generate(21, n, &recipe).unwrap())
+        .map(|n| generate(21, n, &recipe, Level::Standard).unwrap())
         .find(|case| {
             case.model.name == "axis"
                 && case.model.outputs[0].kind == simgap_model::OutputKind::Displacement

@@ -1,10 +1,8 @@
 //! Generated cases: the same bits again, gaps as promised, nothing given away.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
-use simgap_blind::{
-    GAP_OVER_NOISE, LARGEST_GAP, Recipe, SMALLEST_GAP, Status, foreign_effects, generate, schedule,
-};
-use simgap_effects::{Placed, catalogue};
+use simgap_blind::{Level, Recipe, Status, foreign_effects, generate, schedule};
+use simgap_effects::catalogue;
 
 const SEED: u64 = 5;
 
@@ -12,44 +10,90 @@ const SEED: u64 = 5;
 fn verify_same_arguments_give_the_same_case() {
     let recipe = Recipe::Kind("coulomb_friction".into());
     let (once, again) = (
-        generate(SEED, 4, &recipe).unwrap(),
-        generate(SEED, 4, &recipe).unwrap(),
+        generate(SEED, 4, &recipe, Level::Standard).unwrap(),
+        generate(SEED, 4, &recipe, Level::Standard).unwrap(),
     );
     assert_eq!(once.train, again.train);
     assert_eq!(once.check, again.check);
     assert_eq!(once.model, again.model);
-    let other = generate(SEED + 1, 4, &recipe).unwrap();
-    assert_ne!(once.train, other.train);
+    assert_eq!(once.truth, again.truth);
+    for (seed, level) in [(SEED + 1, Level::Standard), (SEED, Level::Hard)] {
+        let other = generate(seed, 4, &recipe, level).unwrap();
+        assert_ne!(once.train, other.train);
+    }
+}
+
+/// What a case of a level must hold.
+fn check_case(number: usize, recipe: &Recipe, level: Level) {
+    let case = generate(SEED, number, recipe, level).unwrap();
+    let truth = &case.truth;
+    case.model.check().unwrap();
+    assert_eq!((case.train.len(), case.check.len()), (2, 1));
+    for record in case.train.iter().chain(&case.check) {
+        assert!((1000..=6000).contains(&record.len()));
+    }
+    let [quietest, loudest] = level.noise_share();
+    assert!((quietest..=loudest).contains(&truth.noise_share));
+    let [smallest, largest] = level.gap();
+    assert_eq!(truth.gaps.len(), truth.effects.len());
+    for gap in &truth.gaps {
+        assert!((smallest..=largest).contains(gap), "{recipe}: {gap}");
+    }
+    let outputs = case.model.outputs.len();
+    assert_eq!(truth.signals[0].len(), outputs);
+    assert!(
+        truth.signals[0]
+            .iter()
+            .all(|y| y.len() == case.check[0].len())
+    );
+    for deviation in &truth.deviations {
+        let [factor] = deviation.placed().unwrap().values[..] else {
+            panic!("{deviation:?}");
+        };
+        assert!((factor - 1.0).abs() <= level.tolerance());
+    }
+    assert_eq!(truth.deviations.is_empty(), *recipe == Recipe::Noise);
+    for effect in &truth.effects {
+        assert_eq!(effect.placed().unwrap().effect.kind(), effect.kind);
+    }
+    let expected = match recipe {
+        Recipe::Noise | Recipe::SmallErrors => (Status::None, 0),
+        Recipe::Foreign(_) => (Status::Unknown, 1),
+        Recipe::TwoParameters => (Status::Parameters, 2),
+        Recipe::Pair(..) => (Status::Effect, 2),
+        Recipe::Kind(_) => (truth.status, 1),
+    };
+    assert_eq!((truth.status, truth.effects.len()), expected);
 }
 
 #[test]
-fn verify_every_recipe_makes_a_case_with_the_promised_gap() {
-    for (number, recipe) in schedule(SEED, 12, &[]).unwrap().iter().enumerate() {
-        let case = generate(SEED, number, recipe).unwrap();
-        let truth = &case.truth;
-        case.model.check().unwrap();
-        assert_eq!((case.train.len(), case.check.len()), (2, 1));
-        for record in case.train.iter().chain(&case.check) {
-            assert!((1000..=6000).contains(&record.len()));
-        }
-        let smallest = SMALLEST_GAP.max(GAP_OVER_NOISE * truth.noise_share);
-        assert_eq!(truth.gaps.len(), truth.effects.len());
-        for gap in &truth.gaps {
-            assert!(*gap >= smallest, "{recipe}: {gap} {smallest}");
-            assert!(truth.status == Status::Parameters || *gap <= LARGEST_GAP);
-        }
-        match recipe {
-            Recipe::Noise => assert_eq!(truth.status, Status::None),
-            Recipe::Foreign(_) => assert_eq!(truth.status, Status::Unknown),
-            Recipe::TwoParameters => assert_eq!(truth.effects.len(), 2),
-            _ => {
-                assert!(truth.closable);
-                // A corrected model file could say it.
-                for entry in &truth.effects {
-                    Placed::from_entry(&case.model, entry).unwrap();
-                }
-            }
-        }
+fn verify_every_kind_of_the_catalogue_can_be_drawn() {
+    for (number, effect) in catalogue().iter().enumerate() {
+        let recipe = Recipe::Kind(effect.kind().to_string());
+        check_case(number, &recipe, Level::Standard);
+    }
+}
+
+/// One in four: the others differ in nothing that the level touches.
+#[test]
+fn verify_kinds_can_be_drawn_with_small_gaps_and_much_noise() {
+    for (number, effect) in catalogue().iter().enumerate().step_by(4) {
+        let recipe = Recipe::Kind(effect.kind().to_string());
+        check_case(number, &recipe, Level::Hard);
+    }
+}
+
+#[test]
+fn verify_every_other_recipe_makes_a_case() {
+    let mut recipes = vec![Recipe::Noise, Recipe::SmallErrors, Recipe::TwoParameters];
+    recipes.push(Recipe::Pair(
+        "coulomb_friction".into(),
+        "sensor_delay".into(),
+    ));
+    let foreign = foreign_effects().into_iter();
+    recipes.extend(foreign.map(|effect| Recipe::Foreign(effect.kind().to_string())));
+    for (number, recipe) in recipes.iter().enumerate() {
+        check_case(100 + number, recipe, Level::Standard);
     }
 }
 
@@ -63,7 +107,7 @@ fn verify_nothing_is_given_away() {
         .filter(|word| *word != "foreign" && word.len() > 3)
         .collect();
     for (number, recipe) in schedule(SEED + 1, 6, &[]).unwrap().iter().enumerate() {
-        let case = generate(SEED + 1, number, recipe).unwrap();
+        let case = generate(SEED + 1, number, recipe, Level::Standard).unwrap();
         assert_eq!(case.name, format!("case-{number:04}"));
         assert!(case.model.effects.is_empty());
         let records = case.train.iter().chain(&case.check);

@@ -1,0 +1,118 @@
+//! The plants of the generated cases.
+
+mod one;
+mod parts;
+mod several;
+
+use simgap_model::{InputKind, Model, OutputKind, damped_modes};
+
+use crate::BlindError;
+use crate::random::Random;
+
+/// A plant and the sizes it is driven at.
+#[derive(Debug, Clone)]
+pub(crate) struct Plant {
+    pub(crate) model: Model,
+    /// Excited band, Hz.
+    pub(crate) band_hz: [f64; 2],
+    /// Peak of the excitation, unit of the input.
+    pub(crate) amplitude: f64,
+    /// Typical displacement, m or rad.
+    pub(crate) displacement_m: f64,
+    pub(crate) sample_rate_hz: f64,
+}
+
+/// Sizes from which a plant is finished.
+struct Sizes {
+    /// Frequency the plant is about, Hz.
+    freq_hz: f64,
+    displacement_m: f64,
+    amplitude: f64,
+}
+
+/// Samples per period of the highest frequency, lowest and highest draw. At 40 the first-order hold
+/// of the inputs errs by (2π/40)²/12 = 0.2 %, as on a decently sampled machine.
+const OVERSAMPLED: [f64; 2] = [40.0, 110.0];
+
+/// Draws a plant.
+pub(crate) fn draw(random: &mut Random) -> Result<Plant, BlindError> {
+    let (model, sizes) = match random.below(18) {
+        0 => one::mold(random),
+        1 => several::mold_on_support(random)?,
+        2..=4 => one::rig(random),
+        5 | 6 => one::axis(random),
+        7..=9 => several::chain(random, 2),
+        10 | 11 => several::chain(random, 3),
+        12 => several::chain(random, 4),
+        13 => one::shaken(random),
+        14 => several::free(random),
+        15 => one::pendulum(random),
+        _ => one::damper(random),
+    };
+    finish(random, model, &sizes)
+}
+
+fn finish(random: &mut Random, model: Model, sizes: &Sizes) -> Result<Plant, BlindError> {
+    let f = sizes.freq_hz;
+    let band_hz = [
+        f * random.log_uniform(0.15, 0.4),
+        f * random.log_uniform(1.3, 2.5),
+    ];
+    let modes = damped_modes(&model.matrices()?)?;
+    let highest = modes
+        .iter()
+        .map(|mode| mode.damped_freq_hz)
+        .fold(band_hz[1], f64::max);
+    Ok(Plant {
+        model,
+        band_hz,
+        amplitude: sizes.amplitude,
+        displacement_m: sizes.displacement_m,
+        sample_rate_hz: highest * random.log_uniform(OVERSAMPLED[0], OVERSAMPLED[1]),
+    })
+}
+
+/// Unit of a channel of the plant.
+pub(crate) fn output_unit(model: &Model, kind: OutputKind) -> &'static str {
+    let rotates = !model.pendulums.is_empty();
+    match (kind, rotates) {
+        (OutputKind::Displacement, false) => "m",
+        (OutputKind::Velocity, false) => "m/s",
+        (OutputKind::Acceleration, false) => "m/s^2",
+        (OutputKind::Force, false) => "N",
+        (OutputKind::Displacement, true) => "rad",
+        (OutputKind::Velocity, true) => "rad/s",
+        (OutputKind::Acceleration, true) => "rad/s^2",
+        (OutputKind::Force, true) => "N m",
+    }
+}
+
+/// Unit of an input of the plant.
+pub(crate) fn input_unit(model: &Model, kind: InputKind) -> &'static str {
+    match kind {
+        InputKind::Force => output_unit(model, OutputKind::Force),
+        InputKind::Displacement => output_unit(model, OutputKind::Displacement),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_every_plant_is_a_model() -> Result<(), BlindError> {
+        let mut names = std::collections::BTreeSet::new();
+        let mut measured = std::collections::BTreeSet::new();
+        for seed in 0..400 {
+            let plant = draw(&mut Random::new(seed))?;
+            plant.model.check()?;
+            measured.extend(plant.model.outputs.iter().map(|o| format!("{:?}", o.kind)));
+            assert!(plant.sample_rate_hz >= OVERSAMPLED[0] * plant.band_hz[1]);
+            names.insert(plant.model.name.clone());
+        }
+        // one mass, mold on a support, axis, 2 to 4 masses, shaken mass, free decay, arm, test stand
+        assert_eq!(names.len(), 10, "{names:?}");
+        assert_eq!(measured.len(), 4, "{measured:?}");
+        Ok(())
+    }
+}
