@@ -273,6 +273,11 @@ pub trait Effect: Sync + Send {
         None
     }
 
+    /// Whether what the effect does grows about in proportion to its sizes from nothing to a start.
+    fn grows_in_proportion(&self) -> bool {
+        true
+    }
+
     /// The clock of an effect that has one of its own.
     fn clock(&self) -> Option<Clock> {
         None

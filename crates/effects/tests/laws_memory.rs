@@ -50,7 +50,10 @@ const FRICTION: f64 = 50.0;
 const SIGMA: f64 = 2e4;
 
 fn dahl(start_share: f64) -> Box<dyn ForceLaw> {
-    law("presliding_friction", &[FRICTION, SIGMA, start_share])
+    law(
+        "presliding_friction",
+        &[FRICTION, FRICTION / SIGMA, start_share],
+    )
 }
 
 /// Loaded from nothing and turned: F = F_c (1 − e^(−σ d / F_c)), then (F₁ + F_c) e^(−σ (d₁ − d) / F_c) − F_c.
@@ -107,12 +110,12 @@ fn verify_presliding_friction_settles_into_its_loop() {
 #[test]
 fn verify_presliding_friction_at_its_limits() {
     // Stiff, it is Coulomb's: the level, with the sign of the motion.
-    let stiff = law("presliding_friction", &[FRICTION, 1e12, 0.3]);
+    let stiff = law("presliding_friction", &[FRICTION, FRICTION / 1e12, 0.3]);
     let found = walk(stiff.as_ref(), [0.001, 0.002, 0.0019, 0.003]);
     assert_eq!(found, [FRICTION, FRICTION, -FRICTION, FRICTION]);
     // Without friction there is nothing, whatever it starts with.
-    for stiffness in [SIGMA, 0.0] {
-        let none = law("presliding_friction", &[0.0, stiffness, 0.8]);
+    for displacement in [FRICTION / SIGMA, 0.0] {
+        let none = law("presliding_friction", &[0.0, displacement, 0.8]);
         assert_eq!(walk(none.as_ref(), [0.0, 0.1, -0.1]), [0.0; 3]);
     }
     // At rest it holds what it carries.
@@ -125,9 +128,9 @@ fn verify_presliding_friction_grows_from_coulomb_friction() {
     let grown = effect("presliding_friction").grown_from(&[33.0], &common::scale());
     assert!(grown.len() > 1);
     assert!(grown.iter().all(|values| values[0] == 33.0));
-    // The presliding displacements F_c / σ differ by more than a factor of five.
+    // The presliding displacements differ by more than a factor of five.
     for pair in grown.windows(2) {
-        assert!(pair[0][1] > 5.0 * pair[1][1], "{grown:?}");
+        assert!(pair[1][1] > 5.0 * pair[0][1], "{grown:?}");
     }
 }
 
@@ -219,7 +222,7 @@ fn verify_hysteresis_turns() {
 
 #[test]
 fn verify_dahl_is_bouc_wen_without_gamma() {
-    let dahl = law("presliding_friction", &[STIFFNESS * YIELD, STIFFNESS, 0.2]);
+    let dahl = law("presliding_friction", &[STIFFNESS * YIELD, YIELD, 0.2]);
     let bouc_wen = bouc_wen(1.0, 1.0, 0.2);
     let path = [0.001, 0.0015, -0.002, 0.004, 0.0041, 0.0];
     let pairs = walk(dahl.as_ref(), path)

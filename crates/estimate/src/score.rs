@@ -143,7 +143,8 @@ fn way(candidate: &Candidate, shape: &[f64]) -> Way {
         _ => false,
     };
     // A limit, or a map that moves in steps, does not grow in proportion to anything.
-    if sizes.is_empty() || stepped {
+    let grows = candidate.effect.grows_in_proportion();
+    if sizes.is_empty() || stepped || !grows {
         Way::AsItStands
     } else {
         Way::BySize(sizes)

@@ -66,9 +66,13 @@ impl Effect for Backlash {
 
     /// The force grows in proportion to a small play only: larger ones have starts of their own.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        [0.2, 0.8, 2.0]
+        [0.05, 0.2, 0.8, 2.0]
             .map(|share| vec![share * scale.displacement_m])
             .to_vec()
+    }
+
+    fn grows_in_proportion(&self) -> bool {
+        false
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -8,26 +8,29 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// Friction that gives like a spring before it slides (Dahl).
 ///
 /// ```text
-/// dF/dd = σ (1 − (F / F_c) sgn ḋ)                                                   (1)
+/// dF/dd = (F_c / d_p) (1 − (F / F_c) sgn ḋ)                                         (1)
 /// ```
 ///
 /// Over a monotone move Δd, (1) is solved exactly:
 ///
 /// ```text
-/// F₁ = s F_c + (F₀ − s F_c) exp(−σ |Δd| / F_c),   s = sgn Δd                        (2)
+/// F₁ = s F_c + (F₀ − s F_c) exp(−|Δd| / d_p),   s = sgn Δd                          (2)
 /// ```
+///
+/// The stiffness before sliding is σ = F_c / d_p. The presliding displacement d_p shapes the loop, the
+/// friction F_c sizes it.
 ///
 /// Reference: \[Dahl1968\].
 pub(crate) struct PreslidingFriction;
 
 struct Law {
     friction: f64,
-    stiffness: f64,
+    displacement: f64,
     start: f64,
 }
 
 impl ForceLaw for Law {
-    lanes!(friction, stiffness, start);
+    lanes!(friction, displacement, start);
 
     fn force(&self, _: MemberMotion) -> f64 {
         self.start * self.friction
@@ -48,7 +51,7 @@ impl ForceLaw for Law {
             return (0.0, 0.0);
         }
         let level = self.friction.copysign(moved);
-        let decay = elementary::exp(-self.stiffness * moved.abs() / self.friction);
+        let decay = elementary::exp(-moved.abs() / self.displacement);
         let force = if moved == 0.0 {
             memory
         } else {
@@ -76,14 +79,14 @@ impl Effect for PreslidingFriction {
     }
 
     fn equation(&self) -> &'static str {
-        "dF/dd = sigma (1 - (F / F_c) sgn d')"
+        "dF/dd = (F_c / d_p) (1 - (F / F_c) sgn d')"
     }
 
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[
                 Parameter::size("friction_force_n", "N", 0.0, f64::INFINITY),
-                Parameter::shape("presliding_stiffness_n_per_m", "N/m", 0.0, f64::INFINITY),
+                Parameter::shape("presliding_displacement_m", "m", 0.0, f64::INFINITY),
                 Parameter::size("start_share", "1", -1.0, 1.0).of_record(),
             ]
         }
@@ -92,7 +95,7 @@ impl Effect for PreslidingFriction {
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         let friction = 0.1 * scale.force_n;
         [0.02, 0.15, 0.8]
-            .map(|share| vec![friction, friction / (share * scale.displacement_m), 0.0])
+            .map(|share| vec![friction, share * scale.displacement_m, 0.0])
             .to_vec()
     }
 
@@ -102,17 +105,14 @@ impl Effect for PreslidingFriction {
 
     fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         [0.02, 0.15, 0.8]
-            .map(|share| {
-                let stiffness = values[0] / (share * scale.displacement_m);
-                vec![values[0], stiffness, 0.0]
-            })
+            .map(|share| vec![values[0], share * scale.displacement_m, 0.0])
             .to_vec()
     }
 
     fn action(&self, values: &[f64]) -> Action {
         Action::Force(Box::new(Law {
             friction: values[0],
-            stiffness: values[1],
+            displacement: values[1],
             start: values[2],
         }))
     }
