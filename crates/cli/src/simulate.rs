@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use simgap_effects::Action;
-use simgap_estimate::{Problem, Weights, fit_initial_states};
+use simgap_estimate::{Problem, Weights, fit_initial_states, simulator_at};
 use simgap_record::write_csv_atomic;
 use simgap_simulate::{Run, output_unit};
 
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     let mut run = Run::new(&model, &record).map_err(failed)?;
     let mut problem = Problem::new(&model, vec![run.clone()]).map_err(failed)?;
     let measured = run.measured.iter().any(Option::is_some);
-    let mut initial = vec![];
+    let mut found = None;
     if measured && !args.from_rest {
         // The record need not start at rest, nor with the even half of an alternation: its outputs
         // say how it starts.
@@ -44,9 +44,16 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
                 (run, problem, best) = (other_half, other, fit);
             }
         }
-        initial = best.estimate.initial.into_iter().next().unwrap_or_default();
+        found = Some(best);
     }
-    let simulator = problem.simulator(&[]).map_err(failed)?;
+    let (simulator, initial) = match &found {
+        Some(fit) => (
+            simulator_at(&problem, fit, 0),
+            fit.estimate.initial.first().cloned().unwrap_or_default(),
+        ),
+        None => (problem.simulator(&[], 0), vec![]),
+    };
+    let simulator = simulator.map_err(failed)?;
     let predicted = simulator.predict(&run, &initial).map_err(failed)?;
     let finite = |signal: &Vec<f64>| signal.iter().all(|value| value.is_finite());
     if let Some(channel) = predicted.iter().position(|signal| !finite(signal)) {

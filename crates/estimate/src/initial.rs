@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use simgap_effects::Placed;
+use simgap_simulate::Simulator;
 
 use crate::fit::fit_with;
 use crate::{EstimateError, Fit, Problem, Start, Weights};
@@ -48,6 +49,16 @@ pub fn fit_initial_states(
         whole.initial.extend(best.estimate.initial);
     }
     fit_with(&fixed, &whole, weights, true, |_, _, _| None)
+}
+
+/// The model of a problem as a fit of [`fit_initial_states`] found it in one of the runs.
+///
+/// # Errors
+/// [`EstimateError`] when a place is not in the model.
+pub fn simulator_at(problem: &Problem, fit: &Fit, run: usize) -> Result<Simulator, EstimateError> {
+    let mut fixed = problem.with_runs(vec![]);
+    fixed.given.retain(|placed| placed.own_places().is_empty());
+    fixed.simulator(&fit.estimate.effects, run)
 }
 
 fn shared_only(placed: &Placed) -> Placed {

@@ -14,7 +14,7 @@ mod score;
 mod site;
 
 pub use fit::{Fit, Interval, fit};
-pub use initial::fit_initial_states;
+pub use initial::{fit_initial_states, simulator_at};
 pub use layout::{Candidate, Start};
 pub use problem::{Problem, Weights};
 pub use score::{Base, Score, linearise_at, score};
