@@ -7,11 +7,14 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use xtask::reproduce::{
-    Block, Comparison, Context, Outcome, Verdict, check, generate, pages, write,
+    Block, Comparison, Context, Outcome, Page, Verdict, check_files, generate, pages, write_files,
 };
 
 /// Generated once for all tests.
 static FILES: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| generate().unwrap());
+
+/// Computed a second time, for all tests.
+static PAGES: LazyLock<Vec<Page>> = LazyLock::new(|| pages().unwrap());
 
 fn fresh(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -25,7 +28,7 @@ fn fresh(name: &str) -> PathBuf {
 /// Every number of every page, as JSON: a change of any computed value shows here.
 #[test]
 fn regress_pages() {
-    for page in pages().unwrap() {
+    for page in PAGES.iter() {
         insta::assert_json_snapshot!(page.stem, page.json());
     }
 }
@@ -43,7 +46,7 @@ fn val_park_one_timing_error() {
 #[test]
 fn verify_committed_files_are_as_generated() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let outcome = check(&root).unwrap();
+    let outcome = check_files(&root, &FILES).unwrap();
     assert!(
         outcome.is_clean(),
         "{outcome}\nrun `cargo xtask reproduce-paper`"
@@ -52,7 +55,11 @@ fn verify_committed_files_are_as_generated() {
 
 #[test]
 fn verify_generation_is_deterministic() {
-    assert!(generate().unwrap() == *FILES);
+    for page in PAGES.iter() {
+        for (name, text) in page.files().unwrap() {
+            assert!(FILES[&name] == text, "{name}");
+        }
+    }
 }
 
 /// Published numbers are never rewritten by a tool.
@@ -78,7 +85,7 @@ fn verify_every_page_says_that_the_data_is_rebuilt() {
 #[test]
 fn verify_pictures_and_pages_agree() {
     let mut shown: Vec<String> = Vec::new();
-    for page in pages().unwrap() {
+    for page in PAGES.iter() {
         for block in &page.blocks {
             if let Block::Figure(name, caption, _) = block {
                 assert!(!caption.is_empty());
@@ -99,8 +106,8 @@ fn verify_pictures_and_pages_agree() {
 fn verify_check_names_what_differs() {
     let root = fresh("check");
     let count = FILES.len();
-    assert_eq!(write(&root).unwrap(), Outcome::Written(count));
-    assert_eq!(check(&root).unwrap(), Outcome::Same(count));
+    assert_eq!(write_files(&root, &FILES).unwrap(), Outcome::Written(count));
+    assert_eq!(check_files(&root, &FILES).unwrap(), Outcome::Same(count));
 
     let changed = root.join("fixtures/reproduction/table4.txt");
     let text = fs::read_to_string(&changed).unwrap();
@@ -109,7 +116,7 @@ fn verify_check_names_what_differs() {
     fs::write(&changed, format!("{head}75236.48{tail}")).unwrap();
     fs::remove_file(root.join("docs/reproduction/fig15.svg")).unwrap();
     fs::write(root.join("docs/reproduction/fig99.svg"), "").unwrap();
-    let outcome = check(&root).unwrap();
+    let outcome = check_files(&root, &FILES).unwrap();
     assert!(!outcome.is_clean());
     assert_eq!(
         outcome,
@@ -120,8 +127,8 @@ fn verify_check_names_what_differs() {
         ])
     );
 
-    write(&root).unwrap();
-    assert_eq!(check(&root).unwrap(), Outcome::Same(count));
+    write_files(&root, &FILES).unwrap();
+    assert_eq!(check_files(&root, &FILES).unwrap(), Outcome::Same(count));
     assert!(!root.join("docs/reproduction/fig99.svg").exists());
 }
 

@@ -13,7 +13,10 @@ use crate::gap::{closed, predict, total};
 use crate::pipeline::Answer;
 use crate::search::name;
 use crate::structure::describe;
-use crate::verdict::{CLOSES, CLOSES_BEYOND_RECALIBRATION, INDISTINGUISHABLE, Judged, STANDS_OUT};
+use crate::verdict::{
+    CLOSES, CLOSES_BEYOND_RECALIBRATION, IMITATION_LEAVES, IMITATION_STANDS_OUT, INDISTINGUISHABLE,
+    Judged, STANDS_OUT,
+};
 
 /// A corrected gap below this share of the motion is good enough for any model.
 const TRIFLE: f64 = 0.01;
@@ -70,6 +73,9 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
 
 /// Whether structure well above the noise is left that the set does not explain.
 fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
+    if imitation(answer, gap) {
+        return true;
+    }
     // What remains must stand out of the noise, and not be a trifle of the motion itself.
     if gap.corrected < STANDS_OUT * gap.noise_floor || gap.corrected < TRIFLE {
         return false;
@@ -94,7 +100,23 @@ fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> b
     );
     let beyond = closed(gap.recalibrated, gap.corrected, floor);
     learnt.max(gap.closed) < CLOSES
+        || (status == Status::Parameters && gap.closed < CLOSES_BEYOND_RECALIBRATION)
         || (status == Status::Effect && beyond < CLOSES_BEYOND_RECALIBRATION)
+}
+
+/// Whether several forces and dynamics together leave more than true ones would: a law that the
+/// catalogue lacks is imitated by two or three that it has.
+fn imitation(answer: &Answer, gap: &Gap) -> bool {
+    let machine = |judged: &&Judged| {
+        matches!(
+            judged.placed.effect.family(),
+            Family::Force | Family::Dynamics
+        )
+    };
+    let count = answer.judged.iter().filter(machine).count();
+    let left = 1.0 - closed(gap.recalibrated, gap.corrected, gap.noise_floor);
+    let stands_out = gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor;
+    count >= 2 && stands_out && left > IMITATION_LEAVES[usize::from(count > 2)]
 }
 
 fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {

@@ -5,7 +5,7 @@ use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states};
 use simgap_simulate::Run;
 
-use crate::evidence::probabilities;
+use crate::evidence::{freedom, probabilities};
 use crate::search::{Hypothesis, Search, name, remove, sort, unique};
 
 /// Evidence an effect must bring beyond its own penalty. Calibrated on generated cases so that
@@ -24,10 +24,18 @@ pub(crate) const CLOSES: f64 = 0.6;
 /// Share of what recalibration leaves that named effects must close, else the cause is unknown: a
 /// familiar effect in the place of a foreign one leaves more.
 pub(crate) const CLOSES_BEYOND_RECALIBRATION: f64 = 0.85;
+/// Several forces may imitate one that is foreign: what a pair may leave of what recalibration leaves,
+/// and what three may, when it stands out of the noise by [`IMITATION_STANDS_OUT`].
+pub(crate) const IMITATION_LEAVES: [f64; 2] = [0.12, 0.05];
+/// See [`IMITATION_LEAVES`]; true effects left up to 1.12 times the noise on tuning cases, sets that
+/// imitate a foreign one 1.14 to 3.5.
+pub(crate) const IMITATION_STANDS_OUT: f64 = 1.25;
 /// A residual below this multiple of the noise floor does not stand out of the noise.
 pub(crate) const STANDS_OUT: f64 = 1.6;
 /// A rival must lead by this much to take a place: less is the accuracy of the fits.
 const TIE: f64 = 0.5;
+/// A rival with fewer parameters may be less likely by this much and still take the place.
+const SIMPLER: f64 = 2.0;
 /// Swaps before the set is taken as it stands.
 const MOST_SWAPS: usize = 3;
 /// Share of the training records that the confirmation learns from.
@@ -287,13 +295,21 @@ fn judge_once(
             relevance: fall(&subset.fit, &set.fit),
             swaps,
         });
-        let lead = better
-            .as_ref()
-            .map_or(set.evidence + TIE, |known| known.evidence);
-        if let Some(best) = rivals
+        // A simpler rival that is about as likely is the better name; one as rich must lead.
+        let handicap = |rival: &Hypothesis| {
+            if freedom(&rival.fit) < freedom(&set.fit) {
+                -SIMPLER
+            } else {
+                TIE
+            }
+        };
+        let mut found = rivals
             .into_iter()
-            .next()
-            .filter(|best| best.evidence > lead)
+            .filter(|rival| rival.evidence > set.evidence + handicap(rival));
+        if let Some(best) = found.next()
+            && better
+                .as_ref()
+                .is_none_or(|known| best.evidence > known.evidence)
         {
             better = Some(best);
         }

@@ -72,6 +72,28 @@ pub fn check(root: &Path) -> Result<Outcome, ReproduceError> {
     files::compare(root, &generate()?)
 }
 
+/// As [`write`], of files generated before.
+///
+/// # Errors
+/// As [`run`].
+pub fn write_files(
+    root: &Path,
+    generated: &BTreeMap<String, String>,
+) -> Result<Outcome, ReproduceError> {
+    files::write(root, generated)
+}
+
+/// As [`check`], of files generated before.
+///
+/// # Errors
+/// As [`run`].
+pub fn check_files(
+    root: &Path,
+    generated: &BTreeMap<String, String>,
+) -> Result<Outcome, ReproduceError> {
+    files::compare(root, generated)
+}
+
 /// All pages, in the order of the index.
 ///
 /// # Errors
