@@ -17,6 +17,9 @@ use crate::{BlindError, Level};
 /// Share of the wanted range of gaps that is kept free at either end: the size is found on the first
 /// record and judged over all.
 const MARGIN: f64 = 1.2;
+/// Gap of a record stored in steps of 0.7 of its deviation, √12 gaps each: six values or so. From
+/// fewer nobody reads how the record began, the true model does not either.
+const COARSEST: f64 = 0.2;
 /// Halving the truth's step may move it by this share of the noise, or of the channel if larger:
 /// no other program could predict a motion that depends on more.
 const REPRODUCIBLE: [f64; 2] = [0.3, 0.002];
@@ -133,8 +136,12 @@ fn sized(
         return Ok(false);
     }
     placed.of_record = own_values(random, placed, draft.benches.len());
-    let [smallest, largest_gap] = draft.level.gap();
-    let target = random.log_uniform(smallest * MARGIN, largest_gap / MARGIN);
+    let [smallest, most] = draft.level.gap();
+    let most = match effect.kind() {
+        "quantisation" => most.min(COARSEST),
+        _ => most,
+    };
+    let target = random.log_uniform(smallest * MARGIN, most / MARGIN);
     let free = bench.free_responses(model, &draft.deviations)?;
     let strikes = effect.strike(&instance, &[0.0, 1.0], &mut || 0.5).is_some();
     let values = |factor: f64| {
