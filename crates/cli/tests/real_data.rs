@@ -45,9 +45,10 @@ fn value(json: &Value, kind: &str, at: &Value) -> f64 {
     named["parameters"][0]["value"].as_f64().unwrap()
 }
 
-/// EMPS: Coulomb friction first, then an offset; published about 20.4 N and 3.2 N.
+/// EMPS: Coulomb friction of about 20.4 N and viscous friction of 166.7 and 240.4 N s/m by direction
+/// are published, on a model that has 203.5 N s/m.
 #[test]
-fn val_emps_friction_and_offset() {
+fn val_emps_friction_and_damping_by_direction() {
     let (Some(model), Some(record)) = (data("emps/model.toml"), data("emps/emps.csv")) else {
         return;
     };
@@ -57,20 +58,15 @@ fn val_emps_friction_and_offset() {
     let json = diagnosis(&bench);
     let carriage = serde_json::json!({"between": ["carriage", "ground"]});
     let friction = value(&json, "coulomb_friction", &carriage);
-    assert!((17.0..=24.0).contains(&friction), "friction {friction} N");
-    let offset = value(
-        &json,
-        "constant_force",
-        &serde_json::json!({"mass": "carriage"}),
-    );
-    assert!((2.0..=4.0).contains(&offset.abs()), "offset {offset} N");
-    let gap = |key: &str| json["gap"][key].as_f64().unwrap();
+    assert!((18.0..=23.0).contains(&friction), "friction {friction} N");
+    // The first parameter is what is added forward.
+    let forward = 203.5 + value(&json, "asymmetric_damping", &carriage);
     assert!(
-        gap("corrected") <= 0.2 * gap("recalibrated"),
-        "{} corrected, {} recalibrated",
-        gap("corrected"),
-        gap("recalibrated")
+        (150.0..=185.0).contains(&forward),
+        "damping forward {forward} N s/m"
     );
+    let corrected = json["gap"]["corrected"].as_f64().unwrap();
+    assert!(corrected <= 0.025, "{corrected} corrected");
 }
 
 /// Lines `from..to` of the data rows of a record, under its header.
