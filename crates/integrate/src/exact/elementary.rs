@@ -103,7 +103,7 @@ const EXP: [f64; 5] = [
 #[inline(always)]
 pub fn exp(x: f64) -> f64 {
     // Beyond these it is 0 or infinite.
-    let bounded = x.max(-746.0).min(710.0);
+    let bounded = x.clamp(-746.0, 710.0);
     let k = (bounded * LOG2_E + ROUND) - ROUND;
     let (high, low) = (bounded - k * LN_2[0], k * LN_2[1]);
     let r = high - low;
@@ -113,8 +113,7 @@ pub fn exp(x: f64) -> f64 {
     // In two halves: 2ᵏ itself may be out of range where the product is not.
     let half = (0.5 * k + ROUND) - ROUND;
     let two_to = |k: f64| f64::from_bits((k + 1023.0 + ROUND).to_bits() << 52);
-    let value = power * two_to(half) * two_to(k - half);
-    if x.is_nan() { x } else { value }
+    power * two_to(half) * two_to(k - half)
 }
 
 #[cfg(test)]

@@ -279,7 +279,13 @@ impl<'a> Plant<'a> {
         };
         self.end_velocity[i] = velocity - c.velocity[own] * self.smooth[i];
         let size = self.smooth[i].abs() + self.dry_force[i].abs();
-        let change = (self.smooth[i] - old_smooth).abs() + (self.dry_force[i] - old_dry).abs();
+        // D follows from S: alone, an element with the S that its D was found for is done.
+        let dry_change = if m == 1 {
+            0.0
+        } else {
+            (self.dry_force[i] - old_dry).abs()
+        };
+        let change = (self.smooth[i] - old_smooth).abs() + dry_change;
         change <= FORCE_TOLERANCE * size
     }
 

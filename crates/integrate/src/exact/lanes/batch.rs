@@ -155,8 +155,32 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// A part of an excitation.
-type Part = for<'e> fn(&Excitation<'e>) -> &'e [f64];
+/// A sample of eight excitations.
+struct At<'a> {
+    sample: usize,
+    counts: &'a [usize; LANES],
+    shared: bool,
+}
+
+impl At<'_> {
+    /// Takes a part of the excitations, `width` values a sample.
+    #[inline(always)]
+    fn fill<'e>(&self, width: usize, out: &mut [Pack], values: impl Fn(usize) -> &'e [f64]) {
+        if self.shared {
+            let row = row(values(0), self.sample, self.counts[0], width);
+            for (out, value) in out.iter_mut().zip(row) {
+                *out = Pack([*value; LANES]);
+            }
+            return;
+        }
+        for l in 0..LANES {
+            let row = row(values(l), self.sample, self.counts[l], width);
+            for (out, value) in out.iter_mut().zip(row) {
+                out.0[l] = *value;
+            }
+        }
+    }
+}
 
 /// The values at a sample, or at the last where that is over.
 #[inline(always)]
@@ -214,26 +238,16 @@ impl<'a> Lanes<'a> {
         let bases = self.base[0].len() / 2;
         self.force.swap(0, 1);
         self.base.swap(0, 1);
-        let (x, v) = self.base[1].split_at_mut(bases);
-        let parts: [(usize, &mut [Pack], Part); 3] = [
-            (n, &mut self.force[1], |e| e.dof_force),
-            (bases, x, |e| e.base_displacement),
-            (bases, v, |e| e.base_velocity),
-        ];
-        for (width, out, values) in parts {
-            if self.shared {
-                let row = row(values(&self.excitations[0]), sample, self.counts[0], width);
-                for (out, value) in out.iter_mut().zip(row) {
-                    *out = Pack([*value; LANES]);
-                }
-                continue;
-            }
-            for l in 0..LANES {
-                let row = row(values(&self.excitations[l]), sample, self.counts[l], width);
-                for (out, value) in out.iter_mut().zip(row) {
-                    out.0[l] = *value;
-                }
-            }
+        let at = At {
+            sample,
+            counts: &self.counts,
+            shared: self.shared,
+        };
+        at.fill(n, &mut self.force[1], |l| self.excitations[l].dof_force);
+        if bases > 0 {
+            let (x, v) = self.base[1].split_at_mut(bases);
+            at.fill(bases, x, |l| self.excitations[l].base_displacement);
+            at.fill(bases, v, |l| self.excitations[l].base_velocity);
         }
     }
 

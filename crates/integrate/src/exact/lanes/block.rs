@@ -83,6 +83,7 @@ impl<'a> Block<'a> {
         };
         let compliance = [fold(0), fold(1), fold(2), fold(3)];
         let element = |i: usize| ElementLanes {
+            alone: m == 1,
             dry: plants[0].dry[i],
             remembers: plants[0].remembers[i],
             displacement: Pack::ZERO,

@@ -21,6 +21,8 @@ pub trait LaneLaw: Send + Sync {
 /// One element of eight sets within one step.
 #[derive(Debug, Clone)]
 pub struct ElementLanes {
+    /// Whether there is no other element.
+    pub(super) alone: bool,
     pub(super) dry: bool,
     pub(super) remembers: bool,
     /// Motion at the end of the step without the forces of the element itself.

@@ -57,10 +57,12 @@ pub(super) fn solve(laws: &impl LawLanes, element: &mut ElementLanes) {
     } else {
         smooth_force(&old_smooth, &open, |l, s| laws.force(l, motion(l, s)))
     };
+    // As in the march of one set, D alone follows from S.
+    let counts = if element.alone { 0.0 } else { 1.0 };
     let mut end_velocity = element.end_velocity;
     for l in 0..LANES {
         let (s, d) = (smooth.0[l], dry.0[l]);
-        let change = (s - old_smooth.0[l]).abs() + (d - old_dry.0[l]).abs();
+        let change = (s - old_smooth.0[l]).abs() + counts * (d - old_dry.0[l]).abs();
         let settled = change <= FORCE_TOLERANCE * (s.abs() + d.abs());
         let end = velocity.0[l] - give_velocity.0[l] * s;
         element.open.0[l] = open.0[l] & !bits(settled);
