@@ -72,7 +72,7 @@ pub fn check(root: &Path) -> Result<Outcome, ReproduceError> {
     files::compare(root, &generate()?)
 }
 
-/// As [`write`], of files generated before.
+/// As [`write()`], of files generated before.
 ///
 /// # Errors
 /// As [`run`].

@@ -2,7 +2,7 @@
 //!
 //! A fit simulates one record again and again with other values of the same effects. Each such
 //! simulation is a chain of operations that wait for each other; eight of them side by side keep
-//! the processor busy, in the lanes of its vector registers. Every number of [`super::march`]
+//! the processor busy, in the lanes of its vector registers. Every number of `super::march`
 //! becomes a [`Pack`] of eight, one for each set, and every branch a choice lane by lane.
 //!
 //! The operations of a lane and their order are those of the march of one set, and none is fused:
