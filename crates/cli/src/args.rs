@@ -1,10 +1,8 @@
 //! Arguments.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use simgap_effects::catalogue;
 
 /// Tells why the real machine does not move like the model.
 #[derive(Parser)]
@@ -22,8 +20,14 @@ pub(crate) enum Command {
     Simulate(SimulateArgs),
     /// Diagnose an embedded record of the mold oscillator and write the report.
     Demo(DemoArgs),
-    /// List the catalogue of effects with their equations and parameters.
-    Effects,
+    /// Say what records hold: columns, units, time base, quality.
+    Check(CheckArgs),
+    /// List the catalogue of effects, or explain one of them.
+    Effects(EffectsArgs),
+    /// Print the completions of a shell.
+    Completions(CompletionsArgs),
+    /// Print the manual page, or write those of all commands.
+    Man(ManArgs),
 }
 
 /// How the result is printed.
@@ -31,7 +35,7 @@ pub(crate) enum Command {
 pub(crate) enum Format {
     /// A summary for people.
     Human,
-    /// The text of diagnosis.json.
+    /// JSON for machines.
     Json,
 }
 
@@ -84,16 +88,35 @@ pub(crate) struct DemoArgs {
     pub(crate) out: PathBuf,
 }
 
-/// The catalogue as text.
-pub(crate) fn effects_table() -> String {
-    let mut text = String::new();
-    for effect in catalogue() {
-        let _ = writeln!(text, "{}\n    {}", effect.kind(), effect.summary());
-        let _ = writeln!(text, "    {}", effect.equation());
-        let _ = writeln!(text, "    placed by {}", effect.site().place());
-        for parameter in effect.parameters() {
-            let _ = writeln!(text, "    {} [{}]", parameter.name, parameter.unit);
-        }
-    }
-    text
+#[derive(Args)]
+pub(crate) struct EffectsArgs {
+    /// Kind to explain, such as coulomb_friction; without one all are listed.
+    pub(crate) kind: Option<String>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value = "human")]
+    pub(crate) format: Format,
+}
+
+#[derive(Args)]
+pub(crate) struct CheckArgs {
+    /// Record to look at (CSV); may be several.
+    #[arg(required = true, value_name = "RECORD")]
+    pub(crate) records: Vec<PathBuf>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value = "human")]
+    pub(crate) format: Format,
+}
+
+#[derive(Args)]
+pub(crate) struct CompletionsArgs {
+    /// Shell that is to complete.
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Args)]
+pub(crate) struct ManArgs {
+    /// Folder for the pages of all commands; without it the first page goes to stdout.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }

@@ -62,7 +62,7 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     };
     let json = write(&outcome, &context, &args.out)?;
     match args.format {
-        Format::Json => say(&json),
+        Format::Json => crate::say_plain(&json),
         Format::Human => {
             let report = args.out.join("report.html");
             say(&format!(
@@ -76,12 +76,8 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
 }
 
 fn summary(outcome: &Outcome) -> String {
-    use std::io::IsTerminal;
-    let styles = if std::io::stdout().is_terminal() {
-        simgap_report::summary::Styles::ansi()
-    } else {
-        simgap_report::summary::Styles::plain()
-    };
+    // Colours that no terminal would show are taken out where it is printed.
+    let styles = simgap_report::summary::Styles::ansi();
     simgap_report::summary::summary_text(&outcome.diagnosis, styles)
 }
 
@@ -146,11 +142,7 @@ pub(crate) fn write(
     context: &simgap_report::page::ReportContext,
     out: &Path,
 ) -> Result<String, CliError> {
-    let mut json =
-        serde_json::to_string_pretty(&outcome.diagnosis).map_err(|error| CliError::Json {
-            found: error.to_string(),
-        })?;
-    json.push('\n');
+    let json = crate::json(&outcome.diagnosis)?;
     let corrected = outcome
         .corrected
         .to_toml()

@@ -40,6 +40,8 @@ pub(crate) enum CliError {
     FolderInPlace { path: PathBuf },
     #[error("{}: is an input of this very command, needed is another file to write to", .path.display())]
     OverInput { path: PathBuf },
+    #[error("unknown kind \"{found}\", nearest are: {near}; simgap effects lists all of them")]
+    UnknownKind { found: String, near: String },
     #[error("--jobs is {found}, needed is 1 to {most}")]
     Jobs { found: usize, most: usize },
     #[error("the threads could not be started ({found}), needed is a smaller --jobs")]

@@ -3,21 +3,25 @@
 #![allow(clippy::print_stderr)]
 
 mod args;
+mod check;
 mod demo;
 mod diagnose;
+mod effects;
 mod error;
 mod folder;
 mod input;
 mod progress;
+mod shell;
 mod simulate;
+mod text;
 mod usage;
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser;
 
 use args::{Cli, Command};
+use error::CliError;
 
 /// Exit status for bad input.
 const BAD_INPUT: u8 = 2;
@@ -41,10 +45,13 @@ fn main() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Demo(args) => demo::run(args),
-        Command::Effects => {
-            say(&args::effects_table());
+        Command::Check(args) => check::run(args),
+        Command::Effects(args) => effects::run(args),
+        Command::Completions(args) => {
+            shell::completions(args);
             Ok(())
         }
+        Command::Man(args) => shell::man(args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -62,8 +69,25 @@ fn refuse(message: &str) -> ExitCode {
     ExitCode::from(BAD_INPUT)
 }
 
-/// Text on stdout. A reader that closes the pipe early, as `head` does, has seen what it wanted.
+/// Text on stdout, in colours where a terminal shows them and `NO_COLOR` does not forbid it.
 pub(crate) fn say(text: &str) {
-    let mut out = std::io::stdout().lock();
+    print(anstream::stdout().lock(), text);
+}
+
+/// Text on stdout as it is.
+pub(crate) fn say_plain(text: &str) {
+    print(std::io::stdout().lock(), text);
+}
+
+/// A reader that closes the pipe early, as `head` does, has seen what it wanted.
+fn print(mut out: impl std::io::Write, text: &str) {
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// The text of `--format json`.
+pub(crate) fn json(value: &impl serde::Serialize) -> Result<String, CliError> {
+    let text = serde_json::to_string_pretty(value).map_err(|error| CliError::Json {
+        found: error.to_string(),
+    })?;
+    Ok(text + "\n")
 }

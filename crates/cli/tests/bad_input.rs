@@ -64,8 +64,13 @@ fn of_records(cases: &[(&str, String)], say: impl Fn(&Bench) -> String) -> Strin
 
 /// The line with the list of all kinds cut out, which grows with the catalogue.
 fn without_kinds(bench: &Bench, line: &str) -> String {
-    let table = bench.done(&["effects"]);
-    let kinds: Vec<&str> = table.lines().filter(|l| !l.starts_with(' ')).collect();
+    let catalogue = bench.done(&["effects", "--format", "json"]);
+    let catalogue: serde_json::Value = serde_json::from_str(&catalogue).unwrap();
+    let effects = catalogue["effects"].as_array().unwrap();
+    let kinds: Vec<&str> = effects
+        .iter()
+        .map(|e| e["kind"].as_str().unwrap())
+        .collect();
     line.replace(&kinds.join(", "), "[kinds]")
 }
 

@@ -241,6 +241,12 @@ pub trait Effect: Sync + Send {
     /// The equation, in the letters of the parameters' documentation.
     fn equation(&self) -> &'static str;
 
+    /// Where the law is taken from: a key of `docs/references.md` and the place there. `None` for
+    /// what needs no source.
+    fn reference(&self) -> Option<&'static str> {
+        None
+    }
+
     /// The parameters, in the order of the value vectors.
     fn parameters(&self) -> &'static [Parameter];
 

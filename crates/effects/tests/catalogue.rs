@@ -1,6 +1,6 @@
 //! What holds for every entry of the catalogue, whatever it is: a new effect is tested here from
 //! the moment it is listed.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
 
@@ -387,4 +387,30 @@ fn verify_texts_can_be_put_into_sentences() {
         }
         assert!(effect.equation().contains('='), "{}", effect.kind());
     }
+}
+
+/// A source is a key of the page of references, and then perhaps the place there.
+#[test]
+fn verify_sources_are_listed_on_the_page_of_references() {
+    let page = include_str!("../../../docs/references.md").to_lowercase();
+    let mut sourced = 0;
+    for effect in catalogue() {
+        let Some(reference) = effect.reference() else {
+            continue;
+        };
+        let key = reference
+            .strip_prefix('[')
+            .and_then(|r| r.split(']').next());
+        let key = key
+            .expect("a source begins with its key in brackets")
+            .to_lowercase();
+        let line = format!("- `{key}`:");
+        assert!(
+            page.contains(&line),
+            "{}: {line} is not listed",
+            effect.kind()
+        );
+        sourced += 1;
+    }
+    assert!(sourced > 10, "only {sourced} kinds name a source");
 }

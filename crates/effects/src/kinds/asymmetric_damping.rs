@@ -53,6 +53,10 @@ impl Effect for AsymmetricDamping {
         "F = c_f v (v > 0), c_b v (v < 0)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Janot2019], for a positioning axis")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

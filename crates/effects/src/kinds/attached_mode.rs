@@ -81,6 +81,10 @@ impl Effect for AttachedMode {
         "m_a z'' + c_a (z' - x') + k_a (z - x) = 0, k_a = m_a (2 pi f)^2, c_a = 4 pi zeta f m_a"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[DenHartog1956], chapter 3")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

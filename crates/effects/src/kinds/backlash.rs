@@ -60,6 +60,10 @@ impl Effect for Backlash {
         "F = k (d - clamp(d, -g/2, g/2))"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Nordin2002]")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const { &[Parameter::size("gap_m", "m", 0.0, f64::INFINITY)] }
     }

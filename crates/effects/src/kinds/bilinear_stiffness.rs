@@ -47,6 +47,10 @@ impl Effect for BilinearStiffness {
         "F = dk max(d, 0)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Worden2001], chapter 1")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[Parameter::size(

@@ -51,6 +51,10 @@ impl Effect for Clipping {
         "y_measured = min(max(y, y_low), y_high)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[BendatPiersol2010], signal clipping")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const LIMIT: Parameter = Parameter {
             lower: f64::NEG_INFINITY,

@@ -257,6 +257,10 @@ impl Effect for Dropouts {
         "y_measured = y where the sample arrived, else the last one that did, or 0"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[BendatPiersol2010], temporary signal dropouts")
+    }
+
     /// Fewest samples in a row that are taken for a loss; a whole number that no fit moves.
     fn parameters(&self) -> &'static [Parameter] {
         const {

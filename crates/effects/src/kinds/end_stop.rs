@@ -52,6 +52,10 @@ impl Effect for EndStop {
         "F = k_c (d - s_u) (d > s_u), k_c (d + s_l) (d < -s_l)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Worden2001], chapter 1")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

@@ -86,6 +86,10 @@ impl Effect for FlexibleSupport {
         "m_s s'' + c_s s' + k_s s = k (x - s) + c (x' - s'), c_s = 2 zeta sqrt(k_s m_s)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[park-mold], equation (4), for a mold on its support")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

@@ -53,6 +53,10 @@ impl Effect for HarmonicForce {
         "F = A sin(2 pi f t + phi)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[DenHartog1956], chapter 2")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

@@ -144,6 +144,10 @@ impl Effect for Hysteresis {
         "F = k z, dz/dd = 1 - (beta sgn(z d') + 1 - beta) |z / u_y|^n"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Ikhouane2007], chapter 2")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

@@ -57,6 +57,10 @@ impl Effect for PositionPeriodicForce {
         "F = a sin(2 pi d / p) + b cos(2 pi d / p)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Otten1997], cogging of a linear motor")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

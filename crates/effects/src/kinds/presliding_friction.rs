@@ -82,6 +82,10 @@ impl Effect for PreslidingFriction {
         "dF/dd = (F_c / d_p) (1 - (F / F_c) sgn d')"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Dahl1968]")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

@@ -56,6 +56,10 @@ impl Effect for Quantisation {
         "y_measured = q round(y / q)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[BendatPiersol2010], quantization")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[Parameter::size(

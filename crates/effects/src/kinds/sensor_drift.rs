@@ -47,6 +47,10 @@ impl Effect for SensorDrift {
         "y_measured(t) = y(t) + r t, t from the start of the record"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[BendatPiersol2010], spurious trends")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[Parameter::size(

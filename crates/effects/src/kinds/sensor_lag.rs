@@ -82,6 +82,10 @@ impl Effect for SensorLag {
         "tau dy_measured/dt + y_measured = y"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Franklin1998], section 4.3")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const { &[Parameter::size("time_constant_s", "s", 0.0, f64::INFINITY)] }
     }

@@ -54,6 +54,10 @@ impl Effect for TimeVaryingStiffness {
         "F = k_a sin(2 pi f t + phi) d"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[Nayfeh1979], chapter 5")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

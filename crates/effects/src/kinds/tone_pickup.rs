@@ -73,6 +73,10 @@ impl Effect for TonePickup {
         "y_measured(t) = y(t) + A sin(2 pi f t + phi)"
     }
 
+    fn reference(&self) -> Option<&'static str> {
+        Some("[BendatPiersol2010], power line pickup")
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[

@@ -1,0 +1,57 @@
+//! `simgap completions` and `simgap man`: both from the definition of the arguments.
+
+use std::path::Path;
+
+use clap::CommandFactory as _;
+use simgap_record::write_text_atomic;
+
+use crate::args::{Cli, CompletionsArgs, ManArgs};
+use crate::error::CliError;
+use crate::folder::Folder;
+use crate::say_plain;
+
+/// Name of the program.
+const NAME: &str = "simgap";
+
+pub(crate) fn completions(args: &CompletionsArgs) {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), NAME, &mut script);
+    say_plain(&String::from_utf8_lossy(&script));
+}
+
+pub(crate) fn man(args: &ManArgs) -> Result<(), CliError> {
+    let mut command = Cli::command().disable_help_subcommand(true);
+    command.build();
+    let mut pages = vec![(NAME.to_string(), page(command.clone()))];
+    for part in command.get_subcommands() {
+        let name = format!("{NAME}-{}", part.get_name());
+        pages.push((name, page(part.clone())));
+    }
+    let Some(out) = &args.out else {
+        say_plain(&pages.swap_remove(0).1);
+        return Ok(());
+    };
+    let file = |name: &str| out.join(format!("{name}.1"));
+    let files: Vec<_> = pages.iter().map(|(name, _)| file(name)).collect();
+    let folder = Folder::make(out, &[], &files)?;
+    for (name, text) in &pages {
+        write_text_atomic(&file(name), text)?;
+    }
+    folder.keep();
+    say_plain(&listed(out, pages.len()));
+    Ok(())
+}
+
+fn listed(out: &Path, count: usize) -> String {
+    format!("{count} pages in {}\n", out.display())
+}
+
+fn page(command: clap::Command) -> String {
+    let mut text = Vec::new();
+    // A Vec takes whatever is written to it.
+    let source = format!("{NAME} {}", env!("CARGO_PKG_VERSION"));
+    let _ = clap_mangen::Man::new(command)
+        .source(source)
+        .render(&mut text);
+    String::from_utf8_lossy(&text).into_owned()
+}

@@ -1,0 +1,158 @@
+//! The commands that explain: the catalogue, records, completions and manual.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use common::{Bench, record};
+use serde_json::Value;
+
+/// Names of the commands, as the help lists them.
+fn commands(bench: &Bench) -> Vec<String> {
+    let help = bench.done(&["--help"]);
+    let (_, list) = help.split_once("Commands:\n").unwrap();
+    let lines = list.lines().take_while(|line| !line.is_empty());
+    // A description that goes on is indented further.
+    let named = lines.filter_map(|line| line.strip_prefix("  "));
+    let named = named.filter(|line| !line.starts_with([' ', '-']));
+    let words = named.map(|line| line.split(' ').next().unwrap().to_string());
+    words.filter(|word| word != "help").collect()
+}
+
+#[test]
+fn regress_help() {
+    let bench = Bench::new();
+    let mut text = bench.done(&["--help"]);
+    for command in commands(&bench) {
+        writeln!(text, "\n==== {command}").unwrap();
+        text += &bench.done(&[&command, "--help"]);
+    }
+    insta::assert_snapshot!(text);
+}
+
+#[test]
+fn regress_an_effect_explained() {
+    let bench = Bench::new();
+    let explained = ["presliding_friction", "clipping", "tone_pickup"];
+    let text = explained.map(|kind| bench.done(&["effects", kind]));
+    insta::assert_snapshot!(text.join("\n"));
+}
+
+#[test]
+fn regress_an_effect_that_is_not_there() {
+    let bench = Bench::new();
+    let asked = ["coulomb", "Clippping", "sensor-lag", "friction", "zzz", ""];
+    let lines = asked.map(|kind| bench.refused(&["effects", kind]));
+    insta::assert_snapshot!(lines.join("\n"));
+}
+
+/// The list for people, the list for machines and each page speak of the same kinds.
+#[test]
+fn verify_the_catalogue_is_whole() {
+    let bench = Bench::new();
+    let all: Value = serde_json::from_str(&bench.done(&["effects", "--format", "json"])).unwrap();
+    assert_eq!(all["schema"], "simgap-effects/1");
+    let effects = all["effects"].as_array().unwrap();
+    let kinds: BTreeSet<&str> = effects
+        .iter()
+        .map(|e| e["kind"].as_str().unwrap())
+        .collect();
+    assert_eq!(kinds.len(), effects.len());
+    let list = bench.done(&["effects"]);
+    let listed = list.lines().filter_map(|line| line.strip_prefix("  "));
+    let listed: BTreeSet<&str> = listed.map(|l| l.split(' ').next().unwrap()).collect();
+    assert_eq!(listed, kinds);
+    for effect in effects {
+        let kind = effect["kind"].as_str().unwrap();
+        let one = bench.done(&["effects", kind, "--format", "json"]);
+        let one: Value = serde_json::from_str(&one).unwrap();
+        assert_eq!(
+            one["effects"].as_array().unwrap(),
+            std::slice::from_ref(effect)
+        );
+        let page = bench.done(&["effects", kind]);
+        for parameter in effect["parameters"].as_array().unwrap() {
+            let name = parameter["name"].as_str().unwrap();
+            assert!(page.contains(name), "{kind}: {name} is not on the page");
+        }
+        for other in effect["confused_with"].as_array().unwrap() {
+            let other = other["kind"].as_str().unwrap();
+            assert!(kinds.contains(other), "{kind} is confused with {other}");
+        }
+    }
+}
+
+#[test]
+fn regress_records_checked() {
+    let bench = Bench::new();
+    bench.write("A.csv", record(60));
+    // Another rate, another unit, another column, a range that is too small, time in ms.
+    let mut other = String::from("t [ms],u [kN],y [mm],T [degC]\n");
+    for k in 0..100 {
+        let angle = 0.1 * f64::from(k);
+        let (u, y) = (angle.cos(), (1.3 * angle.sin()).clamp(-1.0, 1.0));
+        writeln!(other, "{},{u:.6},{y:.6},21.5", 2 * k).unwrap();
+    }
+    bench.write("B.csv", &other);
+    let text = bench.done(&["check", "A.csv", "B.csv"]);
+    let json = bench.done(&["check", "B.csv", "--format", "json"]);
+    insta::assert_snapshot!(format!("{text}\n{json}"));
+}
+
+#[test]
+fn regress_records_that_cannot_be_checked() {
+    let bench = Bench::new();
+    bench.write("A.csv", record(60));
+    bench.write("B.csv", "t [s],y\n0,1\n");
+    let asked: [&[&str]; 3] = [
+        &["check"],
+        &["check", "A.csv", "B.csv"],
+        &["check", "C.csv"],
+    ];
+    let lines = asked.map(|arguments| bench.refused(arguments));
+    insta::assert_snapshot!(lines.join("\n"));
+}
+
+#[test]
+fn verify_every_command_has_completions_and_a_manual_page() {
+    let bench = Bench::new();
+    let commands = commands(&bench);
+    assert!(commands.len() > 5);
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = bench.done(&["completions", shell]);
+        for command in &commands {
+            assert!(script.contains(command.as_str()), "{shell}: {command}");
+        }
+    }
+    bench.done(&["man", "--out", "man"]);
+    let main = bench.read("man/simgap.1");
+    assert_eq!(bench.done(&["man"]), main);
+    for command in &commands {
+        let page = bench.read(&format!("man/simgap-{command}.1"));
+        assert!(page.contains(&format!(".TH simgap-{command} 1")), "{page}");
+        assert!(
+            main.contains(&format!("simgap\\-{command}(1)")),
+            "{command}"
+        );
+    }
+    bench.refused(&["completions", "tcsh"]);
+}
+
+/// A terminal is asked for, so that colours are all that is missing off one.
+#[test]
+fn verify_colours_are_for_terminals() {
+    let bench = Bench::new();
+    let mut forced = bench.simgap(&["effects", "clipping"]);
+    let forced = forced.env("CLICOLOR_FORCE", "1").output().unwrap();
+    let forced = String::from_utf8(forced.stdout).unwrap();
+    assert!(forced.contains('\u{1b}'), "{forced:?}");
+    let plain = bench.done(&["effects", "clipping"]);
+    assert!(!plain.contains('\u{1b}'), "{plain:?}");
+    assert_eq!(anstream::adapter::strip_str(&forced).to_string(), plain);
+    let mut refused = bench.simgap(&["effects", "clipping"]);
+    let refused = refused.env("CLICOLOR_FORCE", "1").env("NO_COLOR", "1");
+    let refused = String::from_utf8(refused.output().unwrap().stdout).unwrap();
+    assert_eq!(refused, plain);
+}
