@@ -20,6 +20,9 @@ use crate::verdict::{
 
 /// A corrected gap below this share of the motion is good enough for any model.
 const TRIFLE: f64 = 0.01;
+/// Share of what a set leaves beyond the noise that a law of any shape at the place of a named effect
+/// may explain: more, and the law of this place is not the named one.
+const ANOTHER_LAW: f64 = 0.3;
 /// Single effects whose gap on the check records is computed.
 const SHOWN: usize = 12;
 
@@ -73,7 +76,7 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
 
 /// Whether structure well above the noise is left that the set does not explain.
 fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
-    if imitation(answer, gap) {
+    if imitation(answer, gap) || another_law(answer, gap) {
         return true;
     }
     // What remains must stand out of the noise, and not be a trifle of the motion itself.
@@ -117,6 +120,18 @@ fn imitation(answer: &Answer, gap: &Gap) -> bool {
     let left = 1.0 - closed(gap.recalibrated, gap.corrected, gap.noise_floor);
     let stands_out = gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor;
     count >= 2 && stands_out && left > IMITATION_LEAVES[usize::from(count > 2)]
+}
+
+/// Whether a law of another shape than the named one acts at its place.
+fn another_law(answer: &Answer, gap: &Gap) -> bool {
+    let Some(law) = &answer.remainder.law else {
+        return false;
+    };
+    let mut named = answer.judged.iter().map(|judged| &judged.placed);
+    law.share > ANOTHER_LAW
+        && gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor
+        && gap.corrected > TRIFLE
+        && named.any(|placed| placed.at == law.at && placed.effect.family() == law.effect.family())
 }
 
 fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {

@@ -19,6 +19,8 @@ pub struct Diagnosis {
     pub r#where: Where,
     /// Which effect causes it.
     pub verdict: Verdict,
+    /// What the answer leaves of the training records.
+    pub remainder: Remains,
     /// The single effects that fit best, at most twelve, by probability and then by gap.
     pub candidates: Vec<CandidateResult>,
     /// The experiment that would tell the rivals apart, if there are any.
@@ -191,6 +193,18 @@ pub struct NamedEffect {
     pub indistinguishable: Vec<Rival>,
     /// Why it is named, one sentence each.
     pub evidence: Vec<String>,
+}
+
+/// What the best set of effects leaves of the training records.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Remains {
+    /// Its rms over that of the white noise; one where nothing is left.
+    pub over_noise: f64,
+    /// The place where a law of any shape would explain most of what stands out of the noise.
+    pub law_at: Option<Location>,
+    /// How much of the square it would explain; a large share says that the law of this place is
+    /// not the one named.
+    pub law_share: f64,
 }
 
 /// An estimated value.

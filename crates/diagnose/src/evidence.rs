@@ -1,21 +1,25 @@
 //! How much the data speak for a set of effects.
 //!
 //! ```text
-//! E = −J − ½ k ln N_eff                                           (1)
+//! E = −J − ½ k ln N_eff − p ln(σ_free / σ_0)                      (1)
 //! N_eff = Σ_c ρ_c N,   ρ_c = N_eff,c / N of the residual          (2)
 //! p_i = exp(E_i / T) / Σ_j exp(E_j / T)                           (3)
 //! ```
 //!
-//! J is the objective of the fit, k the number of parameters of the effects. (1) is the Bayesian
-//! information criterion with the number of samples that are independent, \[Schwarz1978\]; the
-//! temperature T in (3) allows for what (2) does not see.
+//! J is the objective of the fit, k the number of parameters of the effects, p that of nominal
+//! parameters which left the prior σ_0 for one as wide as σ_free. (1) is the Bayesian information
+//! criterion with the number of samples that are independent, \[Schwarz1978\]; the temperature T in
+//! (3) allows for what (2) does not see.
 
-use simgap_effects::Parameter;
+use simgap_effects::{Family, Parameter, Placed};
 use simgap_estimate::{Fit, Problem, Weights};
 use simgap_signal::correlation::effective_sample_count;
 
 /// T of (3), calibrated on generated cases.
 const TEMPERATURE: f64 = 2.0;
+
+/// ln(σ_free / σ_0) of (1): known to a third instead of a fiftieth.
+const FREED: f64 = 2.8;
 
 /// Share of independent samples in the discrepancy of each channel, (2).
 pub(crate) fn independence(fit: &Fit, channels: usize) -> Vec<f64> {
@@ -40,24 +44,26 @@ pub(crate) fn effective_samples(problem: &Problem, weights: &Weights) -> f64 {
 
 /// E of (1).
 pub(crate) fn evidence(fit: &Fit, effective_samples: f64) -> f64 {
-    -fit.objective - 0.5 * freedom(fit) * effective_samples.ln()
+    let effects = fit.estimate.effects.iter();
+    let freed = effects.filter(|placed| is_nominal(placed)).count() as f64;
+    -fit.objective - 0.5 * freedom(fit) * effective_samples.ln() - freed * FREED
 }
 
-/// k of (1): parameters of the effects. One that every record has of its own counts once for each; the
-/// start of a hidden state does not count, as initial states do not.
+/// k of (1): parameters of the effects. One that every record has of its own counts once for each.
 pub(crate) fn freedom(fit: &Fit) -> f64 {
     let runs = fit.estimate.initial.len();
-    let count = |parameter: &Parameter| match (parameter.per_record, parameter.neutral) {
-        (false, _) => 1,
-        (true, None) => runs,
-        (true, Some(_)) => 0,
-    };
+    let count = |parameter: &Parameter| if parameter.per_record { runs } else { 1 };
     let effects = fit.estimate.effects.iter();
+    let effects = effects.filter(|placed| !is_nominal(placed));
     let parameters = effects.flat_map(|placed| placed.effect.parameters());
     parameters.map(count).sum::<usize>() as f64
 }
 
-/// p of (3).
+fn is_nominal(placed: &Placed) -> bool {
+    placed.effect.family() == Family::NominalParameter
+}
+
+/// p_i of (3).
 pub(crate) fn probabilities(evidence: &[f64]) -> Vec<f64> {
     let best = evidence.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let raw: Vec<f64> = evidence

@@ -20,6 +20,7 @@ mod gap;
 mod locate;
 mod parity;
 mod pipeline;
+mod remainder;
 mod search;
 mod structure;
 mod verdict;

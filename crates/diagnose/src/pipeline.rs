@@ -11,6 +11,7 @@ use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
+use crate::remainder::{Remainder, remainder};
 use crate::search::{Hypothesis, Search, name};
 use crate::verdict::{Judged, judge, prune, simplest};
 use crate::{DiagnoseError, answer, locate};
@@ -25,8 +26,12 @@ const SEARCH_STEPS: usize = 10;
 const FINALISTS: usize = 6;
 /// Single effects that are fitted again.
 const SINGLES: usize = 12;
-/// Rivals fitted for each named effect.
-const RIVALS: usize = 8;
+/// Swaps with a better rival before the set is taken as it stands.
+const MOST_SWAPS: usize = 3;
+
+/// A set that leaves this many times what re-estimated parameters leave of the check records is
+/// refuted by them.
+const HARMS: f64 = 1.05;
 
 /// What is asked.
 pub struct Request<'a> {
@@ -59,10 +64,26 @@ pub(crate) struct Answer {
     /// The same set fitted to all training samples.
     pub(crate) estimate: Fit,
     pub(crate) judged: Vec<Judged>,
+    /// What the set leaves.
+    pub(crate) remainder: Remainder,
     /// Single effects, best first.
     pub(crate) singles: Vec<Hypothesis>,
     /// Without any effect, nominal parameters as given.
     pub(crate) nominal: Fit,
+}
+
+impl Answer {
+    /// Everything that is put on the nominal model.
+    fn placed(&self) -> Vec<Placed> {
+        let estimate = &self.estimate.estimate;
+        let all = estimate.effects.iter().chain(&estimate.nominal);
+        all.cloned().collect()
+    }
+
+    fn names_more_than_parameters(&self) -> bool {
+        let mut named = self.judged.iter().map(|judged| &judged.placed);
+        named.any(|placed| placed.effect.family() != Family::NominalParameter)
+    }
 }
 
 /// Diagnoses the gap between a model and records.
@@ -96,27 +117,30 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     progress("nominal model");
     let nominal = fit_initial_states(&train, &[], &plain)?;
     let recalibrated = recalibrate(request, &train, &nominal, &plain)?;
-    let answer = search(request, &train, nominal, &recalibrated, progress)?;
+    let fits = (&nominal, &recalibrated);
+    let mut answer = search(request, &train, fits, Scope::Everything, progress)?;
 
     progress("check records");
     let nominal_placed: Vec<Placed> = vec![];
-    let estimate = &answer.estimate.estimate;
-    let placed: Vec<Placed> = estimate
-        .effects
-        .iter()
-        .chain(&estimate.nominal)
-        .cloned()
-        .collect();
-    let predictions = [&nominal_placed, &recalibrated.estimate.nominal, &placed]
+    let mut placed = answer.placed();
+    let mut predictions = [&nominal_placed, &recalibrated.estimate.nominal, &placed]
         .into_par_iter()
         .map(|effects| predict(&check, effects, &plain))
         .collect::<Result<Vec<_>, _>>()?;
-    let gap = gap(
-        &check,
-        &predictions[0],
-        &predictions[1],
-        (&placed, &predictions[2]),
-    );
+    let gap_of = |placed: &[Placed], predictions: &[Prediction]| {
+        let corrected = (placed, &predictions[2]);
+        gap(&check, &predictions[0], &predictions[1], corrected)
+    };
+    let mut gap = gap_of(&placed, &predictions);
+    if gap.corrected > HARMS * gap.recalibrated && answer.names_more_than_parameters() {
+        // On records it was not fitted to, the set is worse than parameters alone.
+        let singles = std::mem::take(&mut answer.singles);
+        answer = search(request, &train, fits, Scope::Parameters, progress)?;
+        answer.singles = singles;
+        placed = answer.placed();
+        predictions[2] = predict(&check, &placed, &plain)?;
+        gap = gap_of(&placed, &predictions);
+    }
     let mut verdict = answer::verdict(&train, &answer, &gap);
     let left_unknown = verdict.status == crate::Status::Unknown;
     let (gap, placed, shown) = if left_unknown {
@@ -149,6 +173,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
             r#where,
             next_experiment: answer::next_experiment(&verdict),
             verdict,
+            remainder: answer.remainder.told(),
             candidates,
             notes: notes(request, &data),
         },
@@ -193,11 +218,20 @@ fn nominal_parameters(request: &Request<'_>, problem: &Problem) -> Vec<Placed> {
         .collect()
 }
 
+/// What is sought.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Scope {
+    /// Sets of effects of every kind.
+    Everything,
+    /// Nominal parameters alone.
+    Parameters,
+}
+
 fn search(
     request: &Request<'_>,
     train: &Problem,
-    nominal: Fit,
-    recalibrated: &Fit,
+    (nominal, recalibrated): (&Fit, &Fit),
+    scope: Scope,
     progress: Progress<'_>,
 ) -> Result<Answer, DiagnoseError> {
     let channels = request.model.outputs.len();
@@ -218,9 +252,12 @@ fn search(
     // The search, with the colour of the discrepancy as known before it.
     let weights = colour(recalibrated);
     let baseline = fit(&short, &first, &weights)?;
-    let mut search = Search::new(&short, weights, &baseline, request.withheld)?;
+    let mut search = Search::new(&short, weights, (nominal, &baseline), request.withheld)?;
     let base = search.fit(&first)?;
-    let pool = search.run(&base, progress)?;
+    let pool = match scope {
+        Scope::Everything => search.run(&base, progress)?,
+        Scope::Parameters => vec![],
+    };
 
     // The finalists, with the colour of the best one's residual.
     progress("finalists");
@@ -243,27 +280,37 @@ fn search(
 
     progress("verdict");
     let best = simplest(&search, finalists, &singles).unwrap_or(base);
-    let mut set = prune(&search, best)?;
-    if set.effects().is_empty() {
-        // Nothing beyond small errors of the nominal parameters: with those held exactly, is there
-        // a cause after all?
+    let set = prune(&search, best)?;
+    let (set, judged) = if set.effects().is_empty() {
+        // Nothing beyond small errors of the nominal parameters: which of them are seen, when the
+        // others are held exactly?
         progress("exact parameters");
-        let exact = search.fit(&Start {
+        let parameters = search.of_parameters();
+        let exact = parameters.fit(&Start {
             nominal: vec![],
             ..first.clone()
         })?;
-        let best = search
-            .run(&exact, &|_| {})?
-            .into_iter()
-            .next()
-            .unwrap_or(exact);
-        set = prune(&search, best)?;
-    }
-    let (set, judged) = judge(&search, set, RIVALS)?;
+        let best = parameters.run(&exact, &|_| {})?.into_iter().next();
+        let seen = prune(&parameters, best.unwrap_or(exact))?;
+        judge(&parameters, seen, MOST_SWAPS)?
+    } else {
+        judge(&search, set, MOST_SWAPS)?
+    };
+    let mut start = set.fit.estimate.clone();
+    let remainder = if start.nominal.is_empty() {
+        // Held exactly while the cause was sought; the answer adjusts them again.
+        start.nominal = nominal_parameters(request, train);
+        let named: Vec<String> = start.effects.iter().map(name).collect();
+        start.nominal.retain(|p| !named.contains(&name(p)));
+        let settled = search.fit(&start)?;
+        start = settled.fit.estimate.clone();
+        remainder(&search, &settled)?
+    } else {
+        remainder(&search, &set)?
+    };
 
     // The answer, on all samples.
     progress("final fit");
-    let mut start = set.fit.estimate.clone();
     start.initial = nominal.estimate.initial.clone();
     let weights = Weights {
         converged: plain.converged,
@@ -276,8 +323,9 @@ fn search(
         set,
         estimate,
         judged,
+        remainder,
         singles,
-        nominal,
+        nominal: nominal.clone(),
     })
 }
 

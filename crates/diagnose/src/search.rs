@@ -26,10 +26,12 @@ const MOST_STEPS: usize = 10;
 /// Sets that are finished of those fitted roughly.
 const FINISHED: usize = 12;
 /// Prior of [`Weights::independent`] on nominal parameters.
-const NOMINAL_PRIOR: f64 = 0.04;
+const NOMINAL_PRIOR: f64 = 0.02;
 /// A squared discrepancy within this factor of white noise leaves no room for a relevant effect; the
 /// estimate of the noise scatters by three percent.
 const NOTHING_LEFT: f64 = 1.06;
+/// Pull of the prior above which a nominal parameter may have to be named.
+const WISH: f64 = 4.0;
 /// Scores below this cannot reach the threshold of evidence after fitting.
 const HOPELESS: f64 = 1.0;
 
@@ -76,7 +78,9 @@ pub(crate) struct Search<'a> {
     pub(crate) problem: &'a Problem,
     pub(crate) weights: Weights,
     pub(crate) candidates: Vec<(Candidate, SiteScale)>,
-    effective_samples: f64,
+    pub(crate) effective_samples: f64,
+    /// rms of the discrepancy of the model as given for each channel, at most that of the motion.
+    pub(crate) gap: Vec<f64>,
 }
 
 impl<'a> Search<'a> {
@@ -84,7 +88,7 @@ impl<'a> Search<'a> {
     pub(crate) fn new(
         problem: &'a Problem,
         weights: Weights,
-        baseline: &Fit,
+        (nominal, baseline): (&Fit, &Fit),
         withheld: &[String],
     ) -> Result<Search<'a>, EstimateError> {
         let mut scales: Vec<(Location, SiteScale)> = vec![];
@@ -106,12 +110,30 @@ impl<'a> Search<'a> {
             })
             .collect::<Result<Vec<_>, EstimateError>>()?;
         let effective_samples = effective_samples(problem, &weights);
+        let motion = problem.output_std();
+        let gap = nominal.variance.iter().zip(motion);
         Ok(Search {
             problem,
             weights,
             candidates,
             effective_samples,
+            gap: gap.map(|(v, std)| v.sqrt().min(std)).collect(),
         })
+    }
+
+    /// The same search for nominal parameters alone.
+    pub(crate) fn of_parameters(&self) -> Search<'a> {
+        let parameters = self.candidates.iter();
+        Search {
+            problem: self.problem,
+            weights: self.weights.clone(),
+            candidates: parameters
+                .filter(|(candidate, _)| candidate.effect.family() == Family::NominalParameter)
+                .cloned()
+                .collect(),
+            effective_samples: self.effective_samples,
+            gap: self.gap.clone(),
+        }
     }
 
     /// Replaces the weights, after the colour of the residual is better known.
@@ -302,8 +324,11 @@ impl<'a> Search<'a> {
     }
 
     /// Whether a set leaves nothing but white noise: no further effect could lower the squared
-    /// discrepancy by what makes it relevant.
+    /// discrepancy by what makes it relevant. A nominal parameter far from its value leaves a wish.
     fn is_exhausted(&self, set: &Hypothesis) -> bool {
+        if pull(&set.fit.estimate) > WISH {
+            return false;
+        }
         let stepped = crate::gap::stepped(self.problem, set.effects());
         let noise = crate::gap::noise_variance(&set.fit.discrepancy, &stepped);
         let left = set.fit.variance.iter().zip(noise);
@@ -391,6 +416,19 @@ fn neutral(placed: &Placed) -> Vec<f64> {
         .collect()
 }
 
+/// What the prior takes from the evidence of a set: half the squared deviations of the nominal
+/// parameters under it, in units of its standard deviation.
+pub(crate) fn pull(start: &Start) -> f64 {
+    start.nominal.iter().map(pull_of).sum()
+}
+
+fn pull_of(placed: &Placed) -> f64 {
+    let deviations = placed.values.iter();
+    deviations
+        .map(|v| 0.5 * ((v - 1.0) / NOMINAL_PRIOR).powi(2))
+        .sum()
+}
+
 /// Score of a nominal parameter that the fit already adjusts under its prior: freed, it gains what
 /// the prior holds back, and about as much again in what it can then explain.
 fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Score> {
@@ -400,13 +438,9 @@ fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Score> {
         .nominal
         .iter()
         .find(|placed| same(placed, candidate))?;
-    let pull: f64 = placed
-        .values
-        .iter()
-        .map(|v| ((v - 1.0) / NOMINAL_PRIOR).powi(2))
-        .sum();
     Some(Score {
-        gain: pull,
+        gain: 2.0 * pull_of(placed),
+        share: 0.0,
         start: placed.clone(),
     })
 }

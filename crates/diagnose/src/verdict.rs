@@ -1,12 +1,12 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::Placed;
+use simgap_effects::{Action, Placed};
 use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states};
 use simgap_simulate::Run;
 
 use crate::evidence::{freedom, probabilities};
-use crate::search::{Hypothesis, Search, name, remove, sort, unique};
+use crate::search::{Hypothesis, Search, name, pull, remove, sort, unique};
 
 /// Evidence an effect must bring beyond its own penalty. Calibrated on generated cases so that
 /// noise alone earns an effect in fewer than one case in twenty.
@@ -36,8 +36,13 @@ pub(crate) const STANDS_OUT: f64 = 1.6;
 const TIE: f64 = 0.5;
 /// A rival with fewer parameters may be less likely by this much and still take the place.
 const SIMPLER: f64 = 2.0;
-/// Swaps before the set is taken as it stands.
-const MOST_SWAPS: usize = 3;
+/// Rivals fitted for each named effect.
+const RIVALS: usize = 8;
+/// Evidence that a nominal parameter must bring beyond what it brings under its prior: the square of
+/// its deviation in units of the prior, halved, less the penalty for a free parameter.
+const EARNS_AS_PARAMETER: f64 = 1.0;
+/// Smallest part of the gap of the model as given, rms, that an effect must close in a channel.
+const MATTERS: f64 = 0.025;
 /// Share of the training records that the confirmation learns from.
 const LEARNT: f64 = 0.7;
 /// A further effect must lower the squared discrepancy on samples it was not fitted to by this much.
@@ -92,6 +97,7 @@ pub(crate) fn simplest(
     let mut smaller: Vec<&Hypothesis> = smaller
         .filter(|set| set.effects().len() < best.effects().len())
         .filter(|set| !relevant(search.problem, &best.fit, &set.fit))
+        .filter(|set| pull(&set.fit.estimate) - pull(&best.fit.estimate) < EARNS)
         .collect();
     smaller.sort_by(|a, b| {
         let size = |set: &Hypothesis| set.effects().len();
@@ -134,11 +140,7 @@ pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, 
         }
         let mut weakest: Option<Hypothesis> = None;
         for subset in smaller {
-            let earns = set.evidence - subset.evidence > EARNS
-                && identified(&set, &subset)
-                && relevant(search.problem, &set.fit, &subset.fit)
-                && (set.effects().len() < 2 || confirmed(search, &set, &subset)?);
-            if !earns
+            if !earns(search, &set, &subset)?
                 && weakest
                     .as_ref()
                     .is_none_or(|w| subset.evidence > w.evidence)
@@ -153,6 +155,45 @@ pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, 
     }
 }
 
+/// Whether what a subset lacks earns its place in a set.
+fn earns(
+    search: &Search<'_>,
+    set: &Hypothesis,
+    subset: &Hypothesis,
+) -> Result<bool, EstimateError> {
+    let brings = set.evidence - subset.evidence;
+    if is_under_prior(set, subset) {
+        // The subset predicts as well: what it lacks is only how far the parameter may go.
+        return Ok(brings > EARNS_AS_PARAMETER);
+    }
+    if brings < EARNS || !identified(set, subset) {
+        return Ok(false);
+    }
+    if pull(&subset.fit.estimate) - pull(&set.fit.estimate) > EARNS {
+        // Nominal parameters can take its part, but only far from where they are known to be.
+        return Ok(true);
+    }
+    let shrunk = set.effects().len() == subset.effects().len();
+    Ok(relevant(search.problem, &set.fit, &subset.fit)
+        && (shrunk || matters(search, set, subset))
+        && confirmed(search, set, subset)?)
+}
+
+/// Whether the effect that a subset lacks is a nominal parameter that it still adjusts.
+fn is_under_prior(set: &Hypothesis, subset: &Hypothesis) -> bool {
+    let kept = subset.key();
+    let mut lost = set.effects().iter().filter(|p| !kept.contains(&name(p)));
+    let adjusted = &subset.fit.estimate.nominal;
+    lost.all(|placed| adjusted.iter().any(|known| name(known) == name(placed)))
+}
+
+/// Whether the effect closes a part of the gap that is worth a name.
+fn matters(search: &Search<'_>, set: &Hypothesis, subset: &Hypothesis) -> bool {
+    let variances = subset.fit.variance.iter().zip(&set.fit.variance);
+    let mut channels = variances.zip(&search.gap);
+    channels.any(|((poorer, better), gap)| (poorer - better).max(0.0).sqrt() > MATTERS * gap)
+}
+
 /// Whether the effect that a subset lacks has a size that can be told from none: one of its
 /// parameters that has a neutral value is surely away from it.
 fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
@@ -160,6 +201,10 @@ fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
     let effects = set.effects().iter().zip(&set.fit.intervals);
     let mut lost = effects.filter(|(placed, _)| !kept.contains(&name(placed)));
     lost.all(|(placed, intervals)| {
+        if moves_in_steps(placed) {
+            // No derivative to take an interval from.
+            return true;
+        }
         let parameters = placed.effect.parameters().iter().zip(intervals);
         let mut sizes = parameters
             .filter(|(parameter, _)| !parameter.per_record)
@@ -169,6 +214,20 @@ fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
         sizes.peek().is_none()
             || sizes.any(|(neutral, [low, high])| neutral < low || neutral > high)
     })
+}
+
+fn moves_in_steps(placed: &Placed) -> bool {
+    match placed.action() {
+        Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
+        _ => false,
+    }
+}
+
+/// What samples that neither of two sets was fitted to say about them.
+enum Ruling {
+    Better,
+    Worse,
+    Open,
 }
 
 /// Whether the larger set predicts better what neither was fitted to: the last part of each run
@@ -185,27 +244,26 @@ fn confirmed(
         .iter()
         .map(|run| run.slice(cut(run)..run.len))
         .collect();
-    if predicts_better(search, [larger, smaller], first, last)? {
-        return Ok(true);
+    match ruling(search, [larger, smaller], first, last)? {
+        Ruling::Better => return Ok(true),
+        Ruling::Worse => return Ok(false),
+        Ruling::Open => {}
     }
     let Some((apart, others)) = runs.split_last().filter(|(_, others)| !others.is_empty()) else {
         return Ok(false);
     };
-    predicts_better(
-        search,
-        [larger, smaller],
-        others.to_vec(),
-        vec![apart.clone()],
-    )
+    let sets = [larger, smaller];
+    let ruling = ruling(search, sets, others.to_vec(), vec![apart.clone()])?;
+    Ok(matches!(ruling, Ruling::Better))
 }
 
-/// Whether the first of two sets, both fitted to `learnt`, predicts `kept` better than the second.
-fn predicts_better(
+/// Which of two sets, both fitted to `learnt`, predicts `kept` better.
+fn ruling(
     search: &Search<'_>,
     sets: [&Hypothesis; 2],
     learnt: Vec<Run>,
     kept: Vec<Run>,
-) -> Result<bool, EstimateError> {
+) -> Result<Ruling, EstimateError> {
     let learnt = search.problem.with_runs(learnt);
     let kept = search.problem.with_runs(kept);
     let left = sets
@@ -215,8 +273,14 @@ fn predicts_better(
     // One channel that profits is enough, as long as the others do not pay for it.
     let ratios: Vec<f64> = left[0].iter().zip(&left[1]).map(|(l, s)| l / s).collect();
     let best = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-    let geometric: f64 = ratios.iter().map(|r| r.ln()).sum();
-    Ok(best < 1.0 - CONFIRMED && geometric < 0.0)
+    let geometric = ratios.iter().map(|r| r.ln()).sum::<f64>() / ratios.len().max(1) as f64;
+    Ok(if best < 1.0 - CONFIRMED && geometric < 0.0 {
+        Ruling::Better
+    } else if geometric > CONFIRMED {
+        Ruling::Worse
+    } else {
+        Ruling::Open
+    })
 }
 
 /// V_c on the kept runs after a fit to the learnt ones.
@@ -242,17 +306,17 @@ fn held_back_variance(
 pub(crate) fn judge(
     search: &Search<'_>,
     set: Hypothesis,
-    most_rivals: usize,
+    most_swaps: usize,
 ) -> Result<(Hypothesis, Vec<Judged>), EstimateError> {
     let mut set = set;
-    for _ in 0..MOST_SWAPS {
-        let (judged, better) = judge_once(search, &set, most_rivals)?;
+    for _ in 0..most_swaps {
+        let (judged, better) = judge_once(search, &set)?;
         match better {
             Some(better) => set = prune(search, better)?,
             None => return Ok((set, judged)),
         }
     }
-    let (judged, _) = judge_once(search, &set, most_rivals)?;
+    let (judged, _) = judge_once(search, &set)?;
     Ok((set, judged))
 }
 
@@ -260,13 +324,12 @@ pub(crate) fn judge(
 fn judge_once(
     search: &Search<'_>,
     set: &Hypothesis,
-    most_rivals: usize,
 ) -> Result<(Vec<Judged>, Option<Hypothesis>), EstimateError> {
     let mut better: Option<Hypothesis> = None;
     let mut list = Vec::new();
     for i in 0..set.effects().len() {
         let subset = without(search, set, i)?;
-        let mut rivals = search.extend(&subset, most_rivals)?;
+        let mut rivals = search.extend(&subset, RIVALS)?;
         rivals.extend(search.grow(set, i)?);
         for rival in &mut rivals {
             discount(search, set, rival);

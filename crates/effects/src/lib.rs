@@ -7,6 +7,7 @@
 mod catalogue;
 mod effect;
 mod error;
+mod free;
 mod kinds;
 mod place;
 mod signal_map;
@@ -16,5 +17,6 @@ pub use effect::{
     Action, Clock, Effect, Family, LINES, LawOfModel, ModelChange, Parameter, SiteKind, SiteScale,
 };
 pub use error::EffectError;
+pub use free::free_laws;
 pub use place::{Placed, sites};
 pub use signal_map::{Sampled, SignalMap};

@@ -43,13 +43,13 @@ pub struct Weights {
 const MOST_STEPS: usize = 25;
 
 impl Weights {
-    /// Every sample independent, nominal parameters known to 4 %.
+    /// Every sample independent, nominal parameters known to 2 %.
     #[must_use]
     pub fn independent(channels: usize) -> Weights {
         Weights {
             independence: vec![1.0; channels],
             accuracy: 5e-4,
-            nominal_prior: 0.04,
+            nominal_prior: 0.02,
             converged: 0.02,
             keep_nuisance: false,
             most_steps: MOST_STEPS,

@@ -49,6 +49,8 @@ pub struct Base<'a> {
 pub struct Score {
     /// Expected fall of the objective.
     pub gain: f64,
+    /// Share of the weighted squared discrepancy it explains, bᵀâ / rᵀWr of (2).
+    pub share: f64,
     /// The effect with the size the data ask for, inside its physical bounds.
     pub start: Placed,
 }
@@ -258,6 +260,7 @@ impl Base<'_> {
         let share = (energy / self.energy).clamp(0.0, 1.0 - 1e-9);
         Score {
             gain: -0.5 * self.independent_samples * (1.0 - share).ln(),
+            share,
             start: Placed::new(candidate.effect, candidate.at.clone(), values),
         }
     }

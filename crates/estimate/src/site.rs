@@ -79,11 +79,14 @@ impl Problem {
         })
     }
 
-    /// Strongest lines of what a fit leaves of the first run, Hz: of the channel at the place, of
+    /// Strongest lines of what a fit leaves of the longest run, Hz: of the channel at the place, of
     /// all channels elsewhere.
     #[must_use]
     pub fn lines_left(&self, fit: &Fit, at: &Location) -> [f64; LINES] {
-        let (Some(left), Some(run)) = (fit.discrepancy.first(), self.runs.first()) else {
+        let runs = self.runs.iter().zip(&fit.discrepancy);
+        let duration = |run: &Run| run.len as f64 * run.time_step_s;
+        let longest = runs.max_by(|(a, _), (b, _)| duration(a).total_cmp(&duration(b)));
+        let Some((run, left)) = longest else {
             return [0.0; LINES];
         };
         let signals: Vec<&[f64]> = match self.channel_at(at) {

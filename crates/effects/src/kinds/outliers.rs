@@ -24,7 +24,8 @@ use crate::signal_map::{Sampled, SignalMap};
 ///
 /// Here q is the smallest change in the record. In white noise both σ and s are about its deviation.
 /// A smooth, stepping or ringing signal changes beside a group as it does within, so that (4) keeps
-/// it out of (1); two of the nine changes may belong to another spike. At a spike the map delivers
+/// it out of (1); two of the nine changes may belong to another spike. Near an end of the record the
+/// side with fewer than four samples is left out. At a spike the map delivers
 /// what was measured, as the record says nothing of the plant there.
 ///
 /// Reference: \[BendatPiersol2010\], intermittent noise spikes.
@@ -97,20 +98,21 @@ fn spikes(values: &[f64], threshold: f64) -> Vec<Range<usize>> {
     }
     let level = threshold * spread(values);
     let mut groups = Vec::new();
-    let mut first = LEAST_SIDE + 1;
-    while first + LEAST_SIDE + 1 < count {
+    let mut first = 1;
+    while first + 1 < count {
         let jump = (values[first] - values[first - 1]).abs();
         // The least of three changes is below the third largest of nine: most samples end here.
-        let calm = values[first - LEAST_SIDE - 1..first]
+        let calm = values[first.saturating_sub(LEAST_SIDE + 1)..first]
             .windows(2)
             .map(|pair| (pair[1] - pair[0]).abs())
             .fold(f64::INFINITY, f64::min);
+        let calm = if first > LEAST_SIDE { calm } else { 0.0 };
         if jump <= level.max(threshold * calm / THIRD_LARGEST) {
             first += 1;
             continue;
         }
         // The longest first: of two unlike spikes in a row, one would hide the other.
-        let longest = LONGEST.min(count - LEAST_SIDE - 1 - first);
+        let longest = LONGEST.min(count - 1 - first);
         let group = (1..=longest)
             .rev()
             .map(|length| first..first + length)
@@ -147,7 +149,10 @@ fn stands_off(values: &[f64], group: &Range<usize>, level: f64, threshold: f64) 
     }
     let left = &values[group.start.saturating_sub(SIDE + 1)..group.start];
     let right = &values[group.end..(group.end + SIDE + 1).min(values.len())];
-    height > threshold * side(left).max(side(right))
+    // Near an end of the record one side alone has to tell.
+    let seen = [left, right].into_iter();
+    let mut seen = seen.filter(|stretch| stretch.len() > LEAST_SIDE).peekable();
+    seen.peek().is_some() && seen.all(|stretch| height > threshold * side(stretch))
 }
 
 impl SignalMap for Spikes {

@@ -1,0 +1,102 @@
+//! What a set of effects leaves, and whether a law of any shape at one place would explain it.
+//!
+//! ```text
+//! excess = Σ_c ρ_c (1 − N_c / V_c) / Σ_c ρ_c                             (1)
+//! share  = (bᵀâ / rᵀWr) / excess                                         (2)
+//! ```
+//!
+//! V_c is the squared discrepancy of a channel, N_c its white noise, ρ_c the share of its samples
+//! that are independent; bᵀâ / rᵀWr is what the free law explains past all that the fit adjusts
+//! (`simgap_estimate::score`). True effects leave noise, which no law explains. An effect that
+//! stands in for a foreign one leaves the difference of the two laws, which the free law of its
+//! place explains. What a real machine has besides, many small things at many places, it does not.
+
+use rayon::prelude::*;
+use simgap_effects::{Effect, free_laws, sites};
+use simgap_estimate::{Candidate, EstimateError, linearise_at, score};
+use simgap_model::Location;
+
+use crate::diagnosis::Remains;
+use crate::gap::{noise_variance, stepped};
+use crate::search::{Hypothesis, Search};
+
+/// What a set leaves.
+pub(crate) struct Remainder {
+    /// rms over that of the noise.
+    pub(crate) over_noise: f64,
+    /// The free law that explains most.
+    pub(crate) law: Option<FreeLaw>,
+}
+
+/// A law of any shape at the place where it explains most.
+pub(crate) struct FreeLaw {
+    pub(crate) effect: &'static dyn Effect,
+    pub(crate) at: Location,
+    /// (2).
+    pub(crate) share: f64,
+}
+
+impl Remainder {
+    pub(crate) fn told(&self) -> Remains {
+        Remains {
+            over_noise: self.over_noise,
+            law_at: self.law.as_ref().map(|law| law.at.clone()),
+            law_share: self.law.as_ref().map_or(0.0, |law| law.share),
+        }
+    }
+}
+
+/// What a set leaves, by (1) and (2).
+pub(crate) fn remainder(search: &Search<'_>, set: &Hypothesis) -> Result<Remainder, EstimateError> {
+    let stepped = stepped(search.problem, set.effects());
+    let noise = noise_variance(&set.fit.discrepancy, &stepped);
+    let independence = &search.weights.independence;
+    let mut excess = 0.0;
+    for ((left, noise), independence) in set.fit.variance.iter().zip(&noise).zip(independence) {
+        excess += independence * (1.0 - noise / left.max(f64::MIN_POSITIVE)).max(0.0);
+    }
+    excess /= independence.iter().sum::<f64>();
+    Ok(Remainder {
+        over_noise: (1.0 - excess).max(1e-12).sqrt().recip(),
+        law: best_law(search, set, excess)?,
+    })
+}
+
+fn best_law(
+    search: &Search<'_>,
+    set: &Hypothesis,
+    excess: f64,
+) -> Result<Option<FreeLaw>, EstimateError> {
+    let linear = linearise_at(search.problem, &set.fit, &search.weights)?;
+    let places: Vec<(&'static dyn Effect, Location)> = free_laws()
+        .into_iter()
+        .flat_map(|law| {
+            let places = sites(&search.problem.model, law.site());
+            places.into_iter().map(move |at| (law, at))
+        })
+        .collect();
+    let scored = places
+        .into_par_iter()
+        .filter_map(|(effect, at)| {
+            let known = search.candidates.iter().find(|(known, _)| known.at == at);
+            let scale = known?.1;
+            let candidate = Candidate { effect, at };
+            let best = score(&linear, &candidate, &scale)
+                .ok()?
+                .into_iter()
+                .next()?;
+            Some((candidate, best))
+        })
+        .collect::<Vec<_>>();
+    let earned = scored.into_iter().filter_map(|(candidate, best)| {
+        let factors = candidate.effect.parameters().iter();
+        let count = factors.filter(|p| p.neutral.is_some()).count() as f64;
+        let penalty = 0.5 * count * search.effective_samples.ln();
+        (best.gain > penalty).then(|| FreeLaw {
+            effect: candidate.effect,
+            at: candidate.at,
+            share: (best.share / excess.max(f64::MIN_POSITIVE)).min(1.0),
+        })
+    });
+    Ok(earned.max_by(|a, b| a.share.total_cmp(&b.share)))
+}
