@@ -1,0 +1,335 @@
+//! `cargo xtask effects-docs [--check]`: the page on the catalogue, `docs/effects.md`, and a picture
+//! of each signature in `docs/effects/`, made from the catalogue itself.
+
+mod machine;
+mod picture;
+mod signature;
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use simgap_effects::{Effect, Family, Parameter, SiteKind, catalogue};
+use thiserror::Error;
+
+pub use picture::{Picture, PictureError, picture};
+
+/// Path of the page from the root of the workspace.
+pub const PAGE: &str = "docs/effects.md";
+/// Folder of the pictures.
+pub const PICTURES: &str = "docs/effects";
+
+/// Arguments of `effects-docs`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Write nothing; fail where the committed page or a picture differs
+    #[arg(long)]
+    check: bool,
+}
+
+/// The page cannot be made, read or written.
+#[derive(Debug, Error)]
+pub enum EffectsDocsError {
+    /// A file cannot be read or written.
+    #[error("{}: {source}", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A picture cannot be drawn.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+fn refused(path: &Path) -> impl FnOnce(std::io::Error) -> EffectsDocsError {
+    let path = path.to_owned();
+    move |source| EffectsDocsError::File { path, source }
+}
+
+/// Writes the page and the pictures, or compares them with what is committed; one line for each
+/// difference.
+///
+/// # Errors
+/// [`EffectsDocsError`] when a picture cannot be drawn, a file not be read or written.
+pub fn run(args: &Args) -> Result<Vec<String>, EffectsDocsError> {
+    if args.check {
+        return differences();
+    }
+    let files = files()?;
+    let folder = root().join(PICTURES);
+    fs::create_dir_all(&folder).map_err(refused(&folder))?;
+    for strange in strangers(&files)? {
+        let path = root().join(strange);
+        fs::remove_file(&path).map_err(refused(&path))?;
+    }
+    for (name, text) in &files {
+        let path = root().join(name);
+        fs::write(&path, text).map_err(refused(&path))?;
+    }
+    Ok(vec![])
+}
+
+/// How the committed page and pictures differ from what the catalogue says.
+///
+/// # Errors
+/// As [`run`].
+pub fn differences() -> Result<Vec<String>, EffectsDocsError> {
+    let files = files()?;
+    let mut lines: Vec<String> = strangers(&files)?
+        .iter()
+        .map(|name| format!("{name}: no effect of the catalogue has this picture, {REMEDY}"))
+        .collect();
+    for (name, needed) in &files {
+        let path = root().join(name);
+        match fs::read_to_string(&path) {
+            Ok(found) => lines.extend(difference(name, &found, needed)),
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+                lines.push(format!("{name}: missing, {REMEDY}"));
+            }
+            Err(source) => return Err(EffectsDocsError::File { path, source }),
+        }
+    }
+    Ok(lines)
+}
+
+const REMEDY: &str = "run `cargo xtask effects-docs`";
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Pictures that are committed and belong to no effect.
+fn strangers(files: &BTreeMap<String, String>) -> Result<Vec<String>, EffectsDocsError> {
+    let folder = root().join(PICTURES);
+    let mut found = Vec::new();
+    if folder.is_dir() {
+        for entry in fs::read_dir(&folder).map_err(refused(&folder))? {
+            let entry = entry.map_err(refused(&folder))?;
+            let name = format!("{PICTURES}/{}", entry.file_name().to_string_lossy());
+            if !files.contains_key(&name) {
+                found.push(name);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+fn difference(name: &str, found: &str, needed: &str) -> Option<String> {
+    if found == needed {
+        return None;
+    }
+    let same = found
+        .lines()
+        .zip(needed.lines())
+        .take_while(|(a, b)| a == b);
+    let line = same.count() + 1;
+    Some(format!(
+        "{name}:{line}: differs from the catalogue, {REMEDY}"
+    ))
+}
+
+/// Everything that is generated, by its path from the root of the workspace.
+///
+/// # Errors
+/// [`EffectsDocsError::Picture`] when a picture cannot be drawn.
+pub fn files() -> Result<BTreeMap<String, String>, EffectsDocsError> {
+    let mut files = BTreeMap::new();
+    let mut pictures = BTreeMap::new();
+    for &effect in catalogue() {
+        let picture = picture(effect)?;
+        files.insert(
+            format!("{PICTURES}/{}.svg", effect.kind()),
+            picture.svg.clone(),
+        );
+        pictures.insert(effect.kind(), picture);
+    }
+    files.insert(PAGE.to_owned(), page(&pictures));
+    Ok(files)
+}
+
+fn page(pictures: &BTreeMap<&str, Picture>) -> String {
+    let mut text = String::from(
+        "<!-- Generated by `cargo xtask effects-docs`; do not edit. -->\n\n\
+         # The catalogue of effects\n\n\
+         What the diagnosis can name. An `[[effect]]` of a model file has a `kind`, a place and \
+         the parameters below, in SI units:\n\n\
+         ```toml\n[[effect]]\nkind = \"coulomb_friction\"\nbetween = [\"mold\", \"ground\"]\n\
+         friction_force_n = 2100.0\n```\n\n\
+         In the equations `d` is the displacement and `v` the velocity across the place, the \
+         first node relative to the second; `F` is the force carried between the two nodes, \
+         positive when it resists a positive `d`. At a mass, `F` is the force on it.\n\n\
+         The pictures are simulated from the catalogue: a table of 10 kg on a spring of 4000 N/m \
+         and a damper of 40 N s/m (one of the two where the effect sits in the place of the \
+         other), with the values below each picture. Forces are those of the members at the place, \
+         the effect included. They show what to look for in a report; they are no threshold.\n\n",
+    );
+    contents(&mut text);
+    for (family, title) in FAMILIES {
+        let mut of_family = catalogue()
+            .iter()
+            .filter(|effect| effect.family() == family)
+            .peekable();
+        if of_family.peek().is_some() {
+            let _ = write!(text, "\n## {title}\n");
+        }
+        for effect in of_family {
+            section(&mut text, *effect, pictures.get(effect.kind()));
+        }
+    }
+    text
+}
+
+const FAMILIES: [(Family, &str); 4] = [
+    (Family::NominalParameter, "Nominal parameters"),
+    (Family::Force, "Forces"),
+    (Family::Dynamics, "Missing dynamics"),
+    (Family::Measurement, "Measurement chain"),
+];
+
+/// A line of links for each family.
+fn contents(text: &mut String) {
+    for (family, title) in FAMILIES {
+        let links: Vec<String> = catalogue()
+            .iter()
+            .filter(|effect| effect.family() == family)
+            .map(|effect| format!("[{0}](#{0})", effect.kind()))
+            .collect();
+        let _ = writeln!(text, "- {title}: {}", links.join(", "));
+    }
+}
+
+fn section(text: &mut String, effect: &dyn Effect, picture: Option<&Picture>) {
+    let _ = write!(
+        text,
+        "\n### `{}`\n\n{}.\n\n```text\n{}\n```\n\nPlace: {}, `{}`.\n\n\
+         | Parameter | Unit | Range | No effect at |\n|---|---|---|---|\n",
+        effect.kind(),
+        sentence(effect.summary()),
+        effect.equation(),
+        place(effect.site()),
+        effect.site().place(),
+    );
+    for parameter in effect.parameters() {
+        let neutral = parameter
+            .neutral
+            .map_or("shape only".to_owned(), |value| value.to_string());
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | {neutral} |",
+            parameter.name,
+            parameter.unit,
+            range(parameter)
+        );
+    }
+    if let Some(picture) = picture {
+        let _ = write!(
+            text,
+            "\n![{kind}: {shows}]({folder}/{kind}.svg)\n\n*With {values}.*\n",
+            kind = effect.kind(),
+            shows = picture.shows,
+            folder = PICTURES.trim_start_matches("docs/"),
+            values = picture.values.join(", "),
+        );
+    }
+    let _ = write!(text, "\nShown best by: {}.\n", effect.experiment());
+    if !effect.confused_with().is_empty() {
+        text.push_str("\nEasily mistaken for:\n\n");
+        for (kind, because) in effect.confused_with() {
+            let _ = writeln!(text, "- [{kind}](#{kind}): {because}");
+        }
+    }
+}
+
+fn sentence(summary: &str) -> String {
+    let mut letters = summary.chars();
+    match letters.next() {
+        Some(first) => first.to_uppercase().chain(letters).collect(),
+        None => String::new(),
+    }
+}
+
+fn place(site: SiteKind) -> &'static str {
+    match site {
+        SiteKind::Member => "two nodes that a member joins, or a mass and the ground",
+        SiteKind::Spring => "two nodes that a spring joins",
+        SiteKind::GroundSpring => "a node and the ground that a spring joins",
+        SiteKind::Damper => "two nodes that a damper joins",
+        SiteKind::NoSpring => "two nodes, or a mass and the ground, without a spring between them",
+        SiteKind::NoDamper => "two nodes, or a mass and the ground, without a damper between them",
+        SiteKind::Mass => "a mass",
+        SiteKind::Input => "an input",
+        SiteKind::Channel => "an output",
+    }
+}
+
+fn range(parameter: &Parameter) -> String {
+    match (parameter.lower.is_finite(), parameter.upper.is_finite()) {
+        (true, true) => format!("{} to {}", short(parameter.lower), short(parameter.upper)),
+        (true, false) => format!("{} or more", short(parameter.lower)),
+        (false, true) => format!("{} or less", short(parameter.upper)),
+        (false, false) => "any".to_owned(),
+    }
+}
+
+/// A number without a row of zeros.
+fn short(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 {
+        format!("{value:e}")
+    } else {
+        value.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_every_entry_is_on_the_page_once() {
+        let page = page(&BTreeMap::new());
+        for effect in catalogue() {
+            let heading = format!("\n### `{}`\n", effect.kind());
+            assert_eq!(page.matches(&heading).count(), 1, "{heading}");
+            for parameter in effect.parameters() {
+                assert!(page.contains(&format!("| `{}` | {} |", parameter.name, parameter.unit)));
+            }
+        }
+    }
+
+    /// What a picture may weigh.
+    const LARGEST_BYTES: usize = 15_000;
+
+    #[test]
+    fn verify_every_entry_has_a_small_picture_that_changes() {
+        for &effect in catalogue() {
+            let picture = picture(effect).unwrap_or_else(|e| panic!("{}: {e}", effect.kind()));
+            let svg = &picture.svg;
+            assert!(
+                svg.len() < LARGEST_BYTES,
+                "{}: {}",
+                effect.kind(),
+                svg.len()
+            );
+            for needed in ["prefers-color-scheme", "without it", "<title>", " ["] {
+                assert!(svg.contains(needed), "{}: {needed}", effect.kind());
+            }
+            assert!(!svg.contains("no data") && !svg.contains("NaN"));
+        }
+    }
+
+    #[test]
+    fn verify_a_difference_is_named() {
+        assert_eq!(difference(PAGE, "a\nb\n", "a\nb\n"), None);
+        let found = difference(PAGE, "a\nb\n", "a\nc\n").unwrap();
+        assert!(found.starts_with("docs/effects.md:2: differs"), "{found}");
+        assert!(
+            difference(PAGE, "a\n", "a\nc\n")
+                .unwrap()
+                .starts_with("docs/effects.md:2:")
+        );
+    }
+}
