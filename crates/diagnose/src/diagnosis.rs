@@ -207,6 +207,17 @@ pub struct Remains {
     pub law_share: f64,
 }
 
+impl Default for Remains {
+    /// Nothing but noise.
+    fn default() -> Remains {
+        Remains {
+            over_noise: 1.0,
+            law_at: None,
+            law_share: 0.0,
+        }
+    }
+}
+
 /// An estimated value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NamedParameter {

@@ -53,7 +53,7 @@ impl Styles {
 /// # Examples
 ///
 /// ```
-/// # use simgap_diagnose::{Diagnosis, Gap, Status, Verdict, Where};
+/// # use simgap_diagnose::{Diagnosis, Gap, Remains, Status, Verdict, Where};
 /// use simgap_report::summary::{Styles, summary_text};
 /// # let diagnosis = Diagnosis {
 /// #     schema: "simgap-diagnosis/1",
@@ -62,7 +62,7 @@ impl Styles {
 /// #         noise_floor: 0.020, closed: 0.0, channels: vec![] },
 /// #     r#where: Where { channels: vec![], locations: vec![], bands: vec![], times: vec![], states: vec![], records: vec![] },
 /// #     verdict: Verdict { status: Status::None, effects: vec![], description: vec![] },
-/// #     candidates: vec![], next_experiment: None, notes: vec![],
+/// #     remainder: Remains::default(), candidates: vec![], next_experiment: None, notes: vec![],
 /// # };
 /// let text = summary_text(&diagnosis, Styles::plain());
 /// assert!(text.starts_with("The gap is measurement noise; nothing to add.\n"));

@@ -71,7 +71,7 @@ pub enum ReportError {
 /// # Examples
 ///
 /// ```
-/// use simgap_diagnose::{Diagnosis, Gap, Status, Verdict, Where};
+/// use simgap_diagnose::{Diagnosis, Gap, Remains, Status, Verdict, Where};
 /// use simgap_report::page::{ReportContext, report_html};
 /// let diagnosis = Diagnosis {
 ///     schema: "simgap-diagnosis/1",
@@ -94,6 +94,7 @@ pub enum ReportError {
 ///         records: vec![],
 ///     },
 ///     verdict: Verdict { status: Status::None, effects: vec![], description: vec![] },
+///     remainder: Remains::default(),
 ///     candidates: vec![],
 ///     next_experiment: None,
 ///     notes: vec![],

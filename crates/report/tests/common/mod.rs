@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use simgap_diagnose::{
     BandShare, CandidateResult, ChannelGap, ChannelSeries, ChannelShare, CheckSeries, Diagnosis,
-    Gap, LocationShare, NamedEffect, NamedParameter, RecordShare, Rival, StateShare, Status,
-    TimeShare, Verdict, Where,
+    Gap, LocationShare, NamedEffect, NamedParameter, RecordShare, Remains, Rival, StateShare,
+    Status, TimeShare, Verdict, Where,
 };
 use simgap_model::Location;
 use simgap_report::page::ReportContext;
@@ -91,6 +91,7 @@ pub fn series_of(status: Status) -> Vec<CheckSeries> {
 
 pub fn effect() -> Diagnosis {
     Diagnosis {
+        remainder: Remains::default(),
         schema: "simgap-diagnosis/1",
         model: "mold-2dof".into(),
         gap: Gap {
