@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use simgap_diagnose::{CheckSeries, Outcome, Request, diagnose};
+use simgap_model::Model;
 use simgap_record::{write_csv_atomic, write_text_atomic};
+use simgap_report::page::{PictureFile, ReportInput, report};
 
 use crate::args::{DiagnoseArgs, Format};
 use crate::error::CliError;
@@ -14,6 +16,8 @@ use crate::{input, say};
 
 /// Folder of the predictions, inside the folder of the results.
 const PREDICTIONS: &str = "predictions";
+/// Folder of the pictures of the page and their data, inside it too.
+const PICTURES: &str = "pictures";
 
 /// More threads than any machine has cores for; starting a hundred thousand takes minutes.
 const MOST_JOBS: usize = 1024;
@@ -39,7 +43,8 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     let (train, check) = (read(&args.train)?, read(&args.check)?);
     // A folder that cannot be written to is told before the work, not after it.
     let stems: Vec<String> = judged.iter().map(|path| stem(path)).collect();
-    Folder::attempt(&args.out, &[PREDICTIONS], &files(&args.out, &stems))?;
+    let folders = [PREDICTIONS, PICTURES];
+    Folder::attempt(&args.out, &folders, &files(&args.out, &stems, &[]))?;
     let request = Request {
         model: &model,
         train: &train,
@@ -58,9 +63,10 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         model_file: file_name(&args.model),
         train_records: args.train.iter().map(|p| file_name(p)).collect(),
         check_records: args.check.iter().map(|p| file_name(p)).collect(),
-        command_line: String::new(),
+        command_line: command_line(args),
+        seed: args.seed,
     };
-    let json = write(&outcome, &context, &args.out)?;
+    let json = write(&outcome, &model, &context, &args.out)?;
     match args.format {
         Format::Json => crate::say_plain(&json),
         Format::Human => {
@@ -112,15 +118,62 @@ fn distinct_stems(paths: &[PathBuf]) -> Result<(), CliError> {
     Ok(())
 }
 
+/// The command that makes the result again, with the names of the files but not their folders, so
+/// that the same input gives the same page wherever it lies.
+fn command_line(args: &DiagnoseArgs) -> String {
+    let mut words = vec![
+        "simgap".to_string(),
+        "diagnose".to_string(),
+        file_name(&args.model),
+    ];
+    let mut option = |name: &str, value: String| words.extend([name.to_string(), value]);
+    for (name, paths) in [("--train", &args.train), ("--check", &args.check)] {
+        for path in paths {
+            option(name, file_name(path));
+        }
+    }
+    for kind in &args.withhold {
+        option("--withhold", kind.clone());
+    }
+    if args.seed != 0 {
+        option("--seed", args.seed.to_string());
+    }
+    option("--out", "DIR".to_string());
+    let quoted: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+    quoted.join(" ")
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./+=:,@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_string();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
 /// The files of a result.
-fn files(out: &Path, stems: &[String]) -> Vec<PathBuf> {
+fn files(out: &Path, stems: &[String], pictures: &[PictureFile]) -> Vec<PathBuf> {
     let named = ["diagnosis.json", "corrected.toml", "report.html"].map(|name| out.join(name));
     let predictions = stems.iter().map(|stem| prediction_file(out, stem));
-    named.into_iter().chain(predictions).collect()
+    let pictures = pictures.iter().flat_map(|one| picture_files(out, one));
+    named
+        .into_iter()
+        .chain(predictions)
+        .chain(pictures)
+        .collect()
 }
 
 fn prediction_file(out: &Path, stem: &str) -> PathBuf {
     out.join(PREDICTIONS).join(format!("{stem}.csv"))
+}
+
+fn picture_files(out: &Path, picture: &PictureFile) -> [PathBuf; 2] {
+    let at = |extension| {
+        out.join(PICTURES)
+            .join(format!("{}.{extension}", picture.name))
+    };
+    [at("svg"), at("csv")]
 }
 
 fn stem(path: &Path) -> String {
@@ -139,6 +192,7 @@ fn file_name(path: &Path) -> String {
 /// first is written. Returns the text of diagnosis.json.
 pub(crate) fn write(
     outcome: &Outcome,
+    model: &Model,
     context: &simgap_report::page::ReportContext,
     out: &Path,
 ) -> Result<String, CliError> {
@@ -150,15 +204,27 @@ pub(crate) fn write(
             path: out.join("corrected.toml"),
             error,
         })?;
-    let report = simgap_report::page::report_html(&outcome.diagnosis, &outcome.series, context)?;
+    let report = report(&ReportInput {
+        diagnosis: &outcome.diagnosis,
+        series: &outcome.series,
+        nominal: Some(model),
+        corrected: Some(&outcome.corrected),
+        context,
+    })?;
     let stems: Vec<String> = outcome.series.iter().map(stem_of).collect();
     bounded(&outcome.series)?;
-    let folder = Folder::make(out, &[PREDICTIONS], &files(out, &stems))?;
+    let all = files(out, &stems, &report.pictures);
+    let folder = Folder::make(out, &[PREDICTIONS, PICTURES], &all)?;
     for series in &outcome.series {
         write_predictions(series, out)?;
     }
     write_text_atomic(&out.join("corrected.toml"), &corrected)?;
-    write_text_atomic(&out.join("report.html"), &report)?;
+    for picture in &report.pictures {
+        let [svg, csv] = picture_files(out, picture);
+        write_text_atomic(&svg, &picture.svg)?;
+        write_text_atomic(&csv, &picture.csv)?;
+    }
+    write_text_atomic(&out.join("report.html"), &report.html)?;
     write_text_atomic(&out.join("diagnosis.json"), &json)?;
     folder.keep();
     Ok(json)

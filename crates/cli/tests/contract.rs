@@ -34,15 +34,46 @@ impl Demo {
 #[test]
 fn verify_the_files_of_a_result() {
     let written = names(&demo().bench, "diagnosis");
+    let (pictures, others): (Vec<String>, Vec<String>) = written
+        .into_iter()
+        .partition(|name| name.starts_with("pictures/"));
     assert_eq!(
-        written,
+        others,
         [
             "corrected.toml",
             "diagnosis.json",
+            "pictures",
             "predictions",
             "predictions/check.csv",
             "report.html"
         ]
+    );
+    for name in [
+        "gap",
+        "motion",
+        "discrepancy",
+        "spectrum",
+        "share-places",
+        "ranking",
+    ] {
+        let [svg, csv] = ["svg", "csv"].map(|end| format!("pictures/{name}.{end}"));
+        assert!(
+            pictures.contains(&svg) && pictures.contains(&csv),
+            "{pictures:?}"
+        );
+        let (svg, csv) = (
+            demo().bench.read(&format!("diagnosis/{svg}")),
+            demo().bench.read(&format!("diagnosis/{csv}")),
+        );
+        assert!(
+            svg.starts_with("<svg xmlns") && csv.lines().count() > 1,
+            "{name}"
+        );
+    }
+    assert_eq!(
+        pictures.len() % 2,
+        0,
+        "a drawing and its data each: {pictures:?}"
     );
 }
 

@@ -65,7 +65,7 @@ impl Styles {
 /// #     remainder: Remains::default(), candidates: vec![], next_experiment: None, notes: vec![],
 /// # };
 /// let text = summary_text(&diagnosis, Styles::plain());
-/// assert!(text.starts_with("The gap is measurement noise; nothing to add.\n"));
+/// assert!(text.starts_with("The gap of 0.0210 is measurement noise; nothing to add to the model.\n"));
 /// ```
 #[must_use]
 pub fn summary_text(diagnosis: &Diagnosis, styles: Styles) -> String {

@@ -122,6 +122,8 @@ pub(crate) struct Estimate {
     pub(crate) value: String,
     /// Such as "2.05 to 2.15\u{a0}kN", or that the data do not bound it.
     pub(crate) interval: String,
+    /// Such as "2.10 ± 0.05\u{a0}kN"; the value alone where the interval has no end or is lopsided.
+    pub(crate) plus_minus: String,
 }
 
 /// The estimate to the two digits that its interval can carry. `unit` is used where the name has
@@ -148,11 +150,38 @@ pub(crate) fn estimate(parameter: &NamedParameter, unit: &str) -> Estimate {
         (false, true) => format!("below {}{space}{unit}", figure(high)),
         (false, false) => "not bounded by these data".to_owned(),
     };
+    let text = format!("{}{space}{unit}", figure(parameter.value));
+    let plus_minus = even_half(parameter).map_or_else(
+        || text.clone(),
+        |half| plus_minus(value, half * factor) + space + &unit,
+    );
     Estimate {
         words,
-        value: format!("{}{space}{unit}", figure(parameter.value)),
+        value: text,
         interval,
+        plus_minus,
     }
+}
+
+/// Half the width of an interval that reaches about as far down as up.
+fn even_half(parameter: &NamedParameter) -> Option<f64> {
+    let [low, high] = parameter.ci95;
+    let half = 0.5 * (high - low);
+    let middle = 0.5 * (high + low);
+    let even = (parameter.value - middle).abs() < 0.2 * half;
+    (half.is_finite() && half > 0.0 && even).then_some(half)
+}
+
+/// "2.10 ± 0.05": one digit of the uncertainty, two where it begins with 1.
+fn plus_minus(value: f64, half: f64) -> String {
+    let leading = decimal_exponent(half);
+    let begins_with_1 = half < 1.95 * 10f64.powi(leading);
+    let resolution = (leading - i32::from(begins_with_1)).max(decimal_exponent(value) - 5);
+    format!(
+        "{} ± {}",
+        at_resolution(value, resolution),
+        at_resolution(half, resolution)
+    )
 }
 
 #[cfg(test)]
@@ -190,6 +219,20 @@ mod tests {
         };
         let e = estimate(&parameter, "");
         (e.value, e.interval)
+    }
+
+    #[test]
+    fn verify_uncertainty_has_one_digit_or_two() {
+        let shown = |value, low, high| {
+            let name = "friction_force_n".to_owned();
+            let ci95 = [low, high];
+            estimate(&NamedParameter { name, value, ci95 }, "").plus_minus
+        };
+        assert_eq!(shown(2104.3, 2051.0, 2157.6), "2.10 ± 0.05\u{a0}kN");
+        assert_eq!(shown(20.43, 20.31, 20.55), "20.43 ± 0.12\u{a0}N");
+        assert_eq!(shown(20.43, 20.0, f64::INFINITY), "20.4\u{a0}N");
+        // Lopsided: the two ends are told elsewhere.
+        assert_eq!(shown(20.43, 20.0, 25.0), "20.4\u{a0}N");
     }
 
     #[test]

@@ -79,12 +79,20 @@ impl Axis {
     }
 
     fn linear(lo: f64, hi: f64, tick_count: usize) -> Self {
-        let step = nice_step((hi - lo) / tick_count.max(2) as f64);
-        let first = (lo / step - 1e-9).ceil();
-        let values: Vec<f64> = (0..=4 * tick_count)
-            .map(|k| (first + k as f64) * step)
-            .take_while(|v| *v <= hi + 1e-9 * step)
-            .collect();
+        let place = |step: f64| -> Vec<f64> {
+            let first = (lo / step - 1e-9).ceil();
+            (0..=4 * tick_count)
+                .map(|k| (first + k as f64) * step)
+                .take_while(|v| *v <= hi + 1e-9 * step)
+                .collect()
+        };
+        let mut step = nice_step((hi - lo) / tick_count.max(2) as f64);
+        let mut values = place(step);
+        if values.len() < 3 {
+            // Rounding up has taken too many away.
+            step = nice_step((hi - lo) / (2 * tick_count.max(2)) as f64);
+            values = place(step);
+        }
         let largest = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let exponent = common_exponent(largest);
         let scale = 10f64.powi(-exponent);

@@ -1,12 +1,19 @@
 //! Labelled horizontal bars.
 
+use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Drawn, Font, Pen, draw_svg};
-use super::palette::{FRAME, INK, SHADE, parse_rgb};
+use super::palette::{FRAME, GRID, INK, SHADE, parse_rgb};
 use super::{ChartError, ChartSize, Role};
 
 const ROW_PX: f64 = 24.0;
+/// Height of a row whose label stands above its bar.
+const STACKED_ROW_PX: f64 = 40.0;
+/// Labels wider than this share of the picture stand above their bars.
+const WIDEST_BESIDE: f64 = 0.4;
 const BAR_PX: f64 = 14.0;
 const TITLE_PX: f64 = 30.0;
+/// Room for the numbers and the name of the abscissa.
+const AXIS_PX: f64 = 42.0;
 
 /// One bar.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +24,8 @@ pub struct Bar {
     pub value: f64,
     /// A value marked on it by a tick, such as what would be expected by chance.
     pub mark: Option<f64>,
+    /// Where it ended in the step before: the stretch from its end up to there is drawn hollow.
+    pub before: Option<f64>,
     /// Text after its end; the value in per cent if empty.
     pub text: String,
     /// Decides its colour.
@@ -31,6 +40,7 @@ impl Bar {
             label: label.into(),
             value,
             mark: None,
+            before: None,
             text: String::new(),
             role,
         }
@@ -48,8 +58,27 @@ pub struct BarChart {
     pub bars: Vec<Bar>,
     /// Value of a full-width bar; the largest value if `None`.
     pub full: Option<f64>,
+    /// What the length of a bar is, with the unit in brackets; no abscissa is drawn if empty.
+    pub axis_label: String,
+    /// Whether values are shares, written in per cent along the abscissa.
+    pub percent: bool,
+    /// A value marked by a dashed line across all bars.
+    pub limit: Option<f64>,
     /// Width of the picture, px.
     pub width_px: u32,
+}
+
+/// The frame of the bars, px.
+struct Frame {
+    left: f64,
+    right: f64,
+    full: f64,
+}
+
+impl Frame {
+    fn at(&self, value: f64) -> f64 {
+        self.left + (value / self.full).clamp(0.0, 1.0) * (self.right - self.left)
+    }
 }
 
 impl BarChart {
@@ -60,6 +89,9 @@ impl BarChart {
             title: title.into(),
             bars,
             full: Some(1.0),
+            axis_label: String::new(),
+            percent: true,
+            limit: None,
             width_px: 460,
         }
     }
@@ -81,9 +113,7 @@ impl BarChart {
     /// # Ok::<(), simgap_report::chart::ChartError>(())
     /// ```
     pub fn to_svg(&self) -> Result<String, ChartError> {
-        let rows = self.bars.len().max(1) as f64;
-        let height = self.top() + rows * ROW_PX + 6.0;
-        let size = ChartSize::new(self.width_px, (height.max(60.0)) as u32).check()?;
+        let size = self.size().check()?;
         let largest = self.bars.iter().map(|b| b.value).filter(|v| v.is_finite());
         let full = self
             .full
@@ -103,6 +133,35 @@ impl BarChart {
         draw_svg(&self.title, size, |canvas| self.draw(canvas, full))
     }
 
+    /// Natural size of the picture.
+    pub(crate) fn size(&self) -> ChartSize {
+        let rows = self.bars.len().max(1) as f64;
+        let axis_px = if self.axis_label.is_empty() {
+            6.0
+        } else {
+            AXIS_PX
+        };
+        let height = self.top() + rows * self.row_px() + axis_px;
+        ChartSize::new(self.width_px, height.max(60.0) as u32)
+    }
+
+    fn label_px(&self) -> f64 {
+        let widths = self.bars.iter().map(|b| Font::LABEL.width_px(&b.label));
+        widths.fold(0.0, f64::max)
+    }
+
+    fn stacked(&self) -> bool {
+        self.label_px() > WIDEST_BESIDE * f64::from(self.width_px)
+    }
+
+    fn row_px(&self) -> f64 {
+        if self.stacked() {
+            STACKED_ROW_PX
+        } else {
+            ROW_PX
+        }
+    }
+
     fn top(&self) -> f64 {
         if self.title.is_empty() { 4.0 } else { TITLE_PX }
     }
@@ -117,50 +176,113 @@ impl BarChart {
             let at = (8.0, self.top() + 0.5 * ROW_PX);
             return canvas.text("nothing to show", at, Font::LABEL, Anchor::Start);
         }
-        let widest = |texts: &mut dyn Iterator<Item = f64>| texts.fold(0.0, f64::max);
-        let label_px =
-            widest(&mut self.bars.iter().map(|b| Font::LABEL.width_px(&b.label))).min(0.52 * width);
-        let value_px = widest(
-            &mut self
-                .bars
-                .iter()
-                .map(|b| Font::TICK.width_px(&b.value_text())),
-        )
-        .min(0.3 * width);
-        let left = 8.0 + label_px + 8.0;
+        let values = self
+            .bars
+            .iter()
+            .map(|b| Font::TICK.width_px(&b.value_text()));
+        let value_px = values.fold(0.0, f64::max).min(0.3 * width);
+        let stacked = self.stacked();
+        let row_px = self.row_px();
+        let left = if stacked {
+            10.0
+        } else {
+            16.0 + self.label_px()
+        };
         let right = width - value_px - 14.0;
+        let frame = Frame { left, right, full };
+        let foot = self.top() + self.bars.len() as f64 * row_px;
+        self.draw_axis(canvas, &frame, foot)?;
         for (i, bar) in self.bars.iter().enumerate() {
-            let y = self.top() + (i as f64 + 0.5) * ROW_PX;
-            let label = Font::LABEL.fit(&bar.label, label_px + 1.0);
-            canvas.text(&label, (left - 8.0, y), Font::LABEL, Anchor::End)?;
-            canvas.rect(
-                (left, y - 0.5 * BAR_PX),
-                (right, y + 0.5 * BAR_PX),
-                parse_rgb(SHADE),
-            )?;
-            let at = |v: f64| left + (v / full).clamp(0.0, 1.0) * (right - left);
-            if bar.value.is_finite() && bar.value > 0.0 {
-                let end = at(bar.value).max(left + 1.0);
-                canvas.rect(
-                    (left, y - 0.5 * BAR_PX),
-                    (end, y + 0.5 * BAR_PX),
-                    bar.role.rgb(),
-                )?;
-            }
-            if let Some(mark) = bar.mark.filter(|m| m.is_finite()) {
-                let mut pen = Pen::hair(INK);
-                pen.width = 20;
-                canvas.line((at(mark), y - 9.0), (at(mark), y + 9.0), pen)?;
-            }
+            let row = self.top() + i as f64 * row_px;
+            let y = if stacked {
+                let label = Font::LABEL.fit(&bar.label, width - 20.0);
+                canvas.text(&label, (left, row + 10.0), Font::LABEL, Anchor::Start)?;
+                row + 27.0
+            } else {
+                let y = row + 0.5 * row_px;
+                canvas.text(&bar.label, (left - 8.0, y), Font::LABEL, Anchor::End)?;
+                y
+            };
             let text = Font::TICK.fit(&bar.value_text(), value_px + 1.0);
             canvas.text(&text, (right + 6.0, y), Font::TICK, Anchor::Start)?;
+            bar.draw(canvas, &frame, y)?;
         }
-        let foot = self.top() + self.bars.len() as f64 * ROW_PX;
+        if let Some(limit) = self.limit.filter(|v| v.is_finite()) {
+            let pen = Pen {
+                dashed: true,
+                width: 14,
+                ..Pen::hair(INK)
+            };
+            let x = frame.at(limit);
+            canvas.line((x, self.top()), (x, foot), pen)?;
+        }
+        if stacked {
+            return Ok(());
+        }
         canvas.line((left, self.top()), (left, foot), Pen::hair(FRAME))
+    }
+
+    /// Numbers along the abscissa and what they are.
+    fn draw_axis(&self, canvas: &mut Canvas<'_>, frame: &Frame, foot: f64) -> Drawn {
+        if self.axis_label.is_empty() {
+            return Ok(());
+        }
+        let scale = if self.percent { 100.0 } else { 1.0 };
+        let count = ((frame.right - frame.left) / 60.0) as usize;
+        let axis = Axis::exactly([0.0, frame.full * scale], false, count.clamp(2, 8));
+        for (position, label) in &axis.ticks {
+            let x = frame.left + position * (frame.right - frame.left);
+            // Not through the labels.
+            let from = if self.stacked() {
+                foot - 5.0
+            } else {
+                self.top()
+            };
+            canvas.line((x, from), (x, foot), Pen::hair(GRID))?;
+            canvas.text(label, (x, foot + 10.0), Font::TICK, Anchor::Middle)?;
+        }
+        let width = f64::from(self.width_px);
+        let half = 0.5 * Font::LABEL.width_px(&self.axis_label).min(width - 8.0);
+        let middle = (0.5 * (frame.left + frame.right)).min(width - half - 4.0);
+        let text = Font::LABEL.fit(&self.axis_label, width - 8.0);
+        canvas.text(
+            &text,
+            (middle.max(half + 4.0), foot + 29.0),
+            Font::LABEL,
+            Anchor::Middle,
+        )
     }
 }
 
 impl Bar {
+    fn draw(&self, canvas: &mut Canvas<'_>, frame: &Frame, y: f64) -> Drawn {
+        let (top, bottom) = (y - 0.5 * BAR_PX, y + 0.5 * BAR_PX);
+        let shade = parse_rgb(SHADE);
+        canvas.rect((frame.left, top), (frame.right, bottom), shade)?;
+        if self.value.is_finite() && self.value > 0.0 {
+            let end = frame.at(self.value).max(frame.left + 1.0);
+            canvas.rect((frame.left, top), (end, bottom), self.role.rgb())?;
+        }
+        if let Some(before) = self.before.filter(|b| b.is_finite() && *b > self.value) {
+            let (from, to) = (frame.at(self.value.max(0.0)), frame.at(before));
+            let pen = Pen {
+                rgb: self.role.rgb(),
+                width: 12,
+                dashed: false,
+            };
+            let corners = [(from, top), (to, top), (to, bottom), (from, bottom)];
+            canvas.path(&corners, pen)?;
+            canvas.line((from, bottom), (from, top), pen)?;
+        }
+        if let Some(mark) = self.mark.filter(|m| m.is_finite()) {
+            let mut pen = Pen::hair(INK);
+            pen.width = 20;
+            let x = frame.at(mark);
+            canvas.line((x, y - 8.0), (x, y + 8.0), pen)?;
+        }
+        Ok(())
+    }
+
     fn value_text(&self) -> String {
         if !self.text.is_empty() {
             self.text.clone()

@@ -23,6 +23,8 @@ const BACKEND_FONT_DIVISOR: f64 = 1.24;
 const CHARACTER_WIDTH: f64 = 0.56;
 /// Opacity that marks a dashed line until the end.
 const DASH_MARK: f64 = 0.984_375;
+/// Height of a row of the title, px.
+const TITLE_ROW_PX: u32 = 20;
 /// Dash and gap in canvas units.
 const DASH_PATTERN: &str = "60 40";
 
@@ -191,6 +193,48 @@ impl Canvas<'_> {
             .pos(Pos::new(h_pos, VPos::Center));
         self.0.draw_text(&clean, &style, point(at)).map_err(failed)
     }
+}
+
+/// A picture without a visible title as a file of its own: white behind it and its title, which is
+/// also its accessible name, above it in as many rows as it needs.
+pub(crate) fn standalone(svg: &str, title: &str, size: ChartSize) -> String {
+    let rows = wrapped(title, f64::from(size.width_px) - 24.0);
+    let above = 8 + TITLE_ROW_PX * rows.len() as u32;
+    let (width, height) = (size.width_px, size.height_px + above);
+    let name = crate::markup::escape(title);
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {width} {height}\" role=\"img\">\n<title>{name}</title>\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#FFFFFF\"/>\n"
+    );
+    for (i, row) in rows.iter().enumerate() {
+        out.push_str(&format!(
+            "<text x=\"12\" y=\"{}\" font-family=\"sans-serif\" font-size=\"14\" \
+             font-weight=\"bold\" fill=\"{INK}\">{}</text>\n",
+            TITLE_ROW_PX * (i as u32 + 1),
+            crate::markup::escape(row)
+        ));
+    }
+    let inner = svg.replacen("<svg ", &format!("<svg y=\"{above}\" "), 1);
+    out.push_str(&inner);
+    out.push_str("\n</svg>\n");
+    out
+}
+
+/// The words of a title in rows of that width.
+fn wrapped(title: &str, limit_px: f64) -> Vec<String> {
+    let mut rows: Vec<String> = Vec::new();
+    for word in title.split_whitespace() {
+        let word = Font::TITLE.fit(word, limit_px);
+        match rows.last_mut() {
+            Some(row) if Font::TITLE.width_px(&format!("{row} {word}")) <= limit_px => {
+                row.push(' ');
+                row.push_str(&word);
+            }
+            _ => rows.push(word),
+        }
+    }
+    rows
 }
 
 /// Runs `draw` on a canvas of `size` and returns the SVG. `title` is its accessible name.

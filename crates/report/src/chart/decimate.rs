@@ -51,6 +51,66 @@ fn keep_extremes(run: &[(f64, f64)], rising: bool, out: &mut Vec<(f64, f64)>) {
     out.extend(kept.into_iter().map(|i| run[i]));
 }
 
+/// About `budget` indices at which series over a common rising abscissa are worth keeping: in each
+/// of many equal runs of samples those where a series is lowest or highest. Half of the budget goes
+/// to the samples inside `home`.
+pub(crate) fn telling(
+    x: &[f64],
+    series: &[&[f64]],
+    budget: usize,
+    home: Option<[f64; 2]>,
+) -> Vec<usize> {
+    let n = x.len();
+    if n <= budget {
+        return (0..n).collect();
+    }
+    let Some([from, to]) = home else {
+        return extremes(0..n, series, budget);
+    };
+    let first = x.partition_point(|v| *v < from);
+    let last = x.partition_point(|v| *v <= to).max(first);
+    let mut kept = extremes(0..n, series, budget / 2);
+    kept.extend(extremes(first..last, series, budget / 2));
+    kept.sort_unstable();
+    kept.dedup();
+    kept
+}
+
+fn extremes(range: std::ops::Range<usize>, series: &[&[f64]], budget: usize) -> Vec<usize> {
+    if range.len() <= budget {
+        return range.collect();
+    }
+    let runs = (budget / (2 * series.len().max(1))).max(1);
+    let len = range.len().div_ceil(runs).max(1);
+    let mut out = vec![range.start, range.end - 1];
+    for start in range.clone().step_by(len) {
+        let run = start..(start + len).min(range.end);
+        for y in series {
+            out.extend(lowest_and_highest(y, run.clone()));
+        }
+    }
+    out.sort_unstable();
+    out.dedup();
+    out
+}
+
+/// Where the finite values of a run are lowest and highest.
+fn lowest_and_highest(y: &[f64], run: std::ops::Range<usize>) -> impl Iterator<Item = usize> {
+    let (mut low, mut high) = ((f64::INFINITY, None), (f64::NEG_INFINITY, None));
+    for (i, &v) in run.clone().zip(y.get(run).unwrap_or_default()) {
+        if v < low.0 {
+            low = (v, Some(i));
+        }
+        if v > high.0 && v < f64::INFINITY {
+            high = (v, Some(i));
+        }
+    }
+    low.1
+        .filter(|_| low.0 > f64::NEG_INFINITY)
+        .into_iter()
+        .chain(high.1)
+}
+
 /// Points of which at most one lies in each square pixel, in the order they came.
 pub(crate) fn thin_points(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut seen = std::collections::BTreeSet::new();
@@ -85,6 +145,19 @@ mod tests {
         let thinned = thin(&path);
         assert_eq!(thinned.first(), path.first());
         assert_eq!(thinned.last(), path.last());
+    }
+
+    #[test]
+    fn verify_what_tells_is_kept_within_the_budget() {
+        let x: Vec<f64> = (0..100_000).map(|n| f64::from(n) * 1e-3).collect();
+        let mut y: Vec<f64> = x.iter().map(|x| x.sin()).collect();
+        y[70_001] = 9.0;
+        let kept = telling(&x, &[&y], 1000, Some([20.0, 20.3]));
+        assert!((700..=1010).contains(&kept.len()), "{}", kept.len());
+        assert!(kept.contains(&70_001) && kept.contains(&0) && kept.contains(&99_999));
+        // Every sample of the home stretch.
+        assert!((20_001..20_300).all(|i| kept.contains(&i)));
+        assert_eq!(telling(&x[..5], &[&y[..5]], 10, None), [0, 1, 2, 3, 4]);
     }
 
     proptest! {

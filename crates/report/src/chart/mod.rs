@@ -21,10 +21,12 @@
 mod axis;
 mod bar;
 mod canvas;
+mod data;
 mod decimate;
 mod error;
 mod legend;
 mod line;
+mod live;
 mod palette;
 mod plot;
 mod series;
@@ -32,8 +34,11 @@ mod spectrum;
 
 pub(crate) use axis::superscript;
 pub use bar::{Bar, BarChart};
+pub(crate) use canvas::standalone;
+pub(crate) use data::{bars_csv, lines_csv};
 pub use error::ChartError;
 pub use line::{LineChart, Scale, Span};
+pub(crate) use live::live_json;
 pub use palette::{NEUTRAL_COLOURS, ROLE_COLOURS, Role, RoleColour};
 pub use series::{Mark, Series};
 pub use spectrum::SpectrumChart;

@@ -60,6 +60,11 @@ impl<'a> SpectrumChart<'a> {
     /// # Ok::<(), simgap_report::chart::ChartError>(())
     /// ```
     pub fn to_svg(&self) -> Result<String, ChartError> {
+        self.lines().to_svg()
+    }
+
+    /// The same as a line chart.
+    pub(crate) fn lines(&self) -> LineChart<'a> {
         let mut chart = LineChart::new(self.title.clone(), "frequency [Hz]", self.y_label.clone());
         chart.series.clone_from(&self.series);
         chart.spans.clone_from(&self.bands);
@@ -67,6 +72,6 @@ impl<'a> SpectrumChart<'a> {
         chart.y_scale = Scale::Log;
         chart.x_range = self.freq_range_hz;
         chart.size = self.size;
-        chart.to_svg()
+        chart
     }
 }

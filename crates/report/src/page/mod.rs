@@ -1,21 +1,29 @@
 //! A diagnosis as one self-contained HTML page.
 //!
-//! The page needs no script and no network: style and pictures are part of it. It reads on a
-//! dark and on a light screen, on a narrow one and on paper.
+//! The page needs no network: style, pictures and scripts are part of it. It reads on a dark and on
+//! a light screen, on a narrow one, on paper, and without its scripts, which only add zoom and a
+//! cursor to the drawings.
 
 mod answer;
+mod computed;
 mod guide;
+mod picture;
 mod pictures;
+mod script;
 mod stretch;
 mod style;
 mod tables;
+mod values;
+mod whereabouts;
+mod which;
 
 use simgap_diagnose::{CheckSeries, Diagnosis};
-use simgap_model::Location;
+use simgap_model::{Location, Model};
 
 use crate::chart::ChartError;
 use crate::markup::Html;
 use crate::wording::headline;
+pub use picture::PictureFile;
 use pictures::{Pictured, pictured};
 
 /// What a page says about where it comes from.
@@ -32,6 +40,32 @@ pub struct ReportContext {
     pub check_records: Vec<String>,
     /// The command that makes the page again.
     pub command_line: String,
+    /// Seed of the run; nothing in a diagnosis is random, and the page says so.
+    pub seed: u64,
+}
+
+/// All that a page can tell of.
+#[derive(Debug, Clone, Copy)]
+pub struct ReportInput<'a> {
+    /// The answer.
+    pub diagnosis: &'a Diagnosis,
+    /// The check records with their predictions.
+    pub series: &'a [CheckSeries],
+    /// The model as given, to set the corrected one beside it.
+    pub nominal: Option<&'a Model>,
+    /// The corrected model.
+    pub corrected: Option<&'a Model>,
+    /// Where the page comes from.
+    pub context: &'a ReportContext,
+}
+
+/// A page, and its pictures as files of their own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Report {
+    /// The page.
+    pub html: String,
+    /// Its pictures, in the order of the page.
+    pub pictures: Vec<PictureFile>,
 }
 
 /// Why a page cannot be made.
@@ -59,14 +93,39 @@ pub enum ReportError {
     Chart(#[from] ChartError),
 }
 
-/// The page.
+/// The page and its pictures.
 ///
-/// `series` are the check records with their predictions; values that are not finite are left out
-/// of the pictures. Without any the page has no pictures of the motion.
+/// Values that are not finite are left out of the pictures. Without check records the page has no
+/// pictures of the motion, without models no table of their parameters.
 ///
 /// # Errors
 ///
 /// [`ReportError::LengthMismatch`] if a channel of `series` has not one value for each time stamp.
+pub fn report(input: &ReportInput<'_>) -> Result<Report, ReportError> {
+    check_lengths(input.series)?;
+    let shown = pictured(input.diagnosis, input.series);
+    let mut html = Html::default();
+    let mut pictures = Vec::new();
+    html.raw("<!DOCTYPE html>\n");
+    html.within("html", &[("lang", "en")], |html| {
+        html.within("head", &[], |html| head(html, &input.diagnosis.model));
+        html.within("body", &[], |html| {
+            body(html, &mut pictures, input, &shown)?;
+            script::write(html);
+            Ok::<(), ReportError>(())
+        })
+    })?;
+    Ok(Report {
+        html: html.finish(),
+        pictures,
+    })
+}
+
+/// The page alone, of a diagnosis and its check records: [`report`] without models.
+///
+/// # Errors
+///
+/// As [`report`].
 ///
 /// # Examples
 ///
@@ -100,7 +159,7 @@ pub enum ReportError {
 ///     notes: vec![],
 /// };
 /// let page = report_html(&diagnosis, &[], &ReportContext::default())?;
-/// assert!(page.contains("The gap is measurement noise; nothing to add."));
+/// assert!(page.contains("The gap of 0.0210 is measurement noise; nothing to add"));
 /// # Ok::<(), simgap_report::page::ReportError>(())
 /// ```
 pub fn report_html(
@@ -108,69 +167,60 @@ pub fn report_html(
     series: &[CheckSeries],
     context: &ReportContext,
 ) -> Result<String, ReportError> {
-    check_lengths(series)?;
-    let pictures = pictured(diagnosis, series);
-    let mut html = Html::default();
-    html.raw("<!DOCTYPE html>\n");
-    html.within("html", &[("lang", "en")], |html| {
-        html.within("head", &[], |html| {
-            html.void("meta", &[("charset", "utf-8")]);
-            let viewport = "width=device-width,initial-scale=1";
-            html.void("meta", &[("name", "viewport"), ("content", viewport)]);
-            html.void(
-                "meta",
-                &[("name", "color-scheme"), ("content", "light dark")],
-            );
-            html.element(
-                "title",
-                &[],
-                &format!("{}: simgap diagnosis", diagnosis.model),
-            );
-            html.within("style", &[], |html| html.raw(&style::style_sheet()));
-        });
-        html.within("body", &[], |html| {
-            body(html, diagnosis, &pictures, context)
-        })
-    })?;
-    Ok(html.finish())
+    let input = ReportInput {
+        diagnosis,
+        series,
+        nominal: None,
+        corrected: None,
+        context,
+    };
+    report(&input).map(|report| report.html)
 }
 
+fn head(html: &mut Html, model: &str) {
+    html.void("meta", &[("charset", "utf-8")]);
+    let policy = ("http-equiv", "Content-Security-Policy");
+    html.void("meta", &[policy, ("content", script::POLICY)]);
+    let viewport = "width=device-width,initial-scale=1";
+    html.void("meta", &[("name", "viewport"), ("content", viewport)]);
+    let scheme = ("name", "color-scheme");
+    html.void("meta", &[scheme, ("content", "light dark")]);
+    html.element("title", &[], &format!("{model}: simgap diagnosis"));
+    html.within("style", &[], |html| {
+        html.raw(script::style());
+        html.raw(&style::style_sheet());
+    });
+}
+
+/// The page in the order a reader asks: what is it, how does it look, where is it, which is it,
+/// what are the values, are the data sound, what next, how was it computed.
 fn body(
     html: &mut Html,
-    diagnosis: &Diagnosis,
+    files: &mut Vec<PictureFile>,
+    input: &ReportInput<'_>,
     pictures: &[Pictured<'_>],
-    context: &ReportContext,
 ) -> Result<(), ReportError> {
+    let ReportInput {
+        diagnosis, context, ..
+    } = *input;
+    let unit_at = |at: &Location| unit_at(pictures, at);
     html.within("header", &[], |html| {
         provenance(html, diagnosis, context);
         html.element("h1", &[], &headline(diagnosis));
     });
     html.within("main", &[], |html| {
-        let unit_at = |at: &Location| unit_at(pictures, at);
-        answer::first_screen(html, diagnosis, pictures, &unit_at)?;
-        answer::left_over(html, pictures)?;
-        answer::whereabouts(html, diagnosis)?;
-        tables::effects(html, diagnosis, &unit_at);
-        tables::ambiguity(html, diagnosis);
-        tables::candidates(html, diagnosis);
+        answer::first_screen(html, files, diagnosis, &unit_at)?;
+        answer::motion(html, files, pictures)?;
+        whereabouts::whereabouts(html, files, diagnosis, pictures)?;
+        which::which(html, files, diagnosis)?;
+        values::values(html, input, &unit_at);
         tables::channels(html, diagnosis);
-        answer::further_records(html, pictures)?;
-        tables::notes(html, diagnosis);
+        tables::quality(html, diagnosis);
+        tables::next_experiment(html, diagnosis);
+        computed::computed(html, input);
         guide::how_to_read(html);
-        Ok::<(), ReportError>(())
-    })?;
-    html.within("footer", &[], |html| {
-        if !context.command_line.is_empty() {
-            html.element("p", &[], "This page was made by");
-            html.element("pre", &[], &context.command_line);
-        }
-        let version = format!(
-            "simgap {}. Schema {}.",
-            context.program_version, diagnosis.schema
-        );
-        html.element("p", &[], &version);
-    });
-    Ok(())
+        Ok(())
+    })
 }
 
 fn provenance(html: &mut Html, diagnosis: &Diagnosis, context: &ReportContext) {

@@ -3,13 +3,17 @@
 use simgap_diagnose::{ChannelSeries, CheckSeries, Diagnosis};
 use simgap_signal::welch::{WelchOptions, welch};
 
+use super::picture::{Picture, SIZE};
 use super::stretch::{longest_finite_run, telling_stretch};
-use crate::chart::{ChartError, ChartSize, LineChart, Role, Scale, Series, Span, SpectrumChart};
+use crate::chart::{ChartError, LineChart, Mark, Role, Scale, Series, Span, SpectrumChart};
 use crate::unit::{Prefixed, prefixed};
 use crate::wording::corrected_name;
 
-/// Two of them stand side by side on a wide page, and each still reads on a narrow one.
-pub(crate) const SIZE: ChartSize = ChartSize::new(560, 290);
+/// Points that the script may show of a record, and of any other line.
+const RECORD_POINTS: usize = 6000;
+const LINE_POINTS: usize = 1500;
+/// Stretches of the time strip.
+const STRETCHES: usize = 60;
 /// A spectrum of fewer samples says nothing.
 const FEWEST_SAMPLES: usize = 64;
 /// Averages wanted before the resolution is raised.
@@ -27,6 +31,8 @@ pub(crate) struct Pictured<'a> {
     diagnosis: &'a Diagnosis,
     /// rms of the nominal discrepancy over the standard deviation of the measurement.
     pub(crate) nominal_gap: f64,
+    /// First and one-past-last sample of the stretch where the nominal model is worst.
+    worst: Option<(usize, usize)>,
 }
 
 /// Every channel of every check record, the worst predicted first.
@@ -43,6 +49,10 @@ pub(crate) fn pictured<'a>(
                 channel,
                 diagnosis,
                 nominal_gap: relative_gap(&channel.measured, &channel.nominal),
+                worst: telling_stretch(
+                    &channel.measured,
+                    &discrepancy(&channel.measured, &channel.nominal),
+                ),
             })
         })
         .collect();
@@ -81,6 +91,15 @@ fn size_of(values: &[&[f64]]) -> f64 {
         .fold(0.0, |m, v| m.max(v.abs()))
 }
 
+fn rms_of_finite(values: &[f64]) -> f64 {
+    let finite = || values.iter().filter(|v| v.is_finite());
+    let count = finite().count();
+    if count == 0 {
+        return f64::NAN;
+    }
+    (finite().map(|v| v * v).sum::<f64>() / count as f64).sqrt()
+}
+
 fn scaled<'x>(name: &str, role: Role, x: &'x [f64], y: &[f64], factor: f64) -> Series<'x> {
     let n = x.len().min(y.len());
     let y: Vec<f64> = y[..n].iter().map(|v| v * factor).collect();
@@ -95,68 +114,113 @@ impl Pictured<'_> {
 
     /// Where the nominal model is worst, s; `None` where the record is short anyway.
     pub(crate) fn worst_s(&self) -> Option<[f64; 2]> {
-        let off = discrepancy(&self.channel.measured, &self.channel.nominal);
-        let (from, to) = telling_stretch(&self.channel.measured, &off)?;
+        let (from, to) = self.worst?;
         let (from, to) = (*self.time_s.get(from)?, *self.time_s.get(to - 1)?);
         (from < to && from.is_finite() && to.is_finite()).then_some([from, to])
     }
 
     /// Measured, nominal and corrected over the whole record, or over `zoom`.
-    pub(crate) fn motion(&self, title: &str, zoom: Option<[f64; 2]>) -> Result<String, ChartError> {
+    pub(crate) fn motion(
+        &self,
+        title: &str,
+        zoom: Option<[f64; 2]>,
+    ) -> Result<Picture, ChartError> {
         let c = self.channel;
         let Prefixed { unit, factor } = prefixed(c.unit, size_of(&[&c.measured]));
-        let t = self.time_s;
-        let corrected = corrected_name(self.diagnosis.verdict.status);
-        let mut chart = LineChart::new(title, "time [s]", format!("{} [{unit}]", c.channel))
-            .with(scaled("measured", Role::Measured, t, &c.measured, factor))
-            .with(scaled(
-                "model as given",
-                Role::Nominal,
-                t,
-                &c.nominal,
-                factor,
-            ))
-            .with(scaled(corrected, Role::Corrected, t, &c.corrected, factor));
+        // The samples around the stretch are enough for it.
+        let shown = match (zoom, self.worst) {
+            (Some(_), Some((from, to))) => from.saturating_sub(1)..(to + 1).min(self.time_s.len()),
+            _ => 0..self.time_s.len(),
+        };
+        let t = &self.time_s[shown.clone()];
+        let lines = [
+            ("measured", Role::Measured, &c.measured),
+            ("model as given", Role::Nominal, &c.nominal),
+            (self.corrected_name(), Role::Corrected, &c.corrected),
+        ];
+        let mut chart = LineChart::new(title, "time [s]", format!("{} [{unit}]", c.channel));
+        for (name, role, values) in lines {
+            let values = &values[shown.clone()];
+            chart.series.push(scaled(name, role, t, values, factor));
+        }
         chart.size = SIZE;
         chart.x_range = zoom;
-        if let (None, Some([from, to])) = (zoom, self.worst_s()) {
-            chart.spans.push(Span {
-                from,
-                to,
-                label: "shown enlarged".to_owned(),
-            });
+        let worst = self.worst_s();
+        if zoom.is_some() {
+            return Picture::lines("motion-worst", chart, None, None);
         }
-        chart.to_svg()
+        chart.spans.extend(worst.map(|[from, to]| Span {
+            from,
+            to,
+            label: "worst stretch".to_owned(),
+        }));
+        Picture::lines("motion", chart, Some(RECORD_POINTS), worst)
     }
 
     /// What the model as given and the corrected one leave, over time.
-    pub(crate) fn left_over(&self, title: &str) -> Result<String, ChartError> {
+    pub(crate) fn left_over(&self, title: &str) -> Result<Picture, ChartError> {
         let c = self.channel;
         let before = discrepancy(&c.measured, &c.nominal);
         let after = discrepancy(&c.measured, &c.corrected);
         let Prefixed { unit, factor } = prefixed(c.unit, size_of(&[&before, &after]));
-        let mut chart = LineChart::new(title, "time [s]", format!("measured − predicted [{unit}]"))
+        let t = self.time_s;
+        let y_label = format!("measured − predicted [{unit}]");
+        let mut chart = LineChart::new(title, "time [s]", y_label)
+            .with(scaled("model as given", Role::Nominal, t, &before, factor))
             .with(scaled(
-                "model as given",
-                Role::Nominal,
-                self.time_s,
-                &before,
-                factor,
-            ))
-            .with(scaled(
-                corrected_name(self.diagnosis.verdict.status),
+                self.corrected_name(),
                 Role::Corrected,
-                self.time_s,
+                t,
                 &after,
                 factor,
             ));
         chart.size = SIZE;
-        chart.to_svg()
+        Picture::lines("discrepancy", chart, Some(LINE_POINTS), self.worst_s())
+    }
+
+    /// The rms of both in equal stretches of the record: where in time the gap lies.
+    pub(crate) fn strip(&self, title: &str) -> Result<Option<Picture>, ChartError> {
+        let c = self.channel;
+        let n = self.time_s.len();
+        if n < 2 * STRETCHES {
+            return Ok(None);
+        }
+        let len = n.div_ceil(STRETCHES);
+        let ends = || (0..n).step_by(len).chain([n - 1]);
+        let times: Vec<f64> = ends().map(|i| self.time_s[i]).collect();
+        let rms = |predicted: &[f64]| -> Vec<f64> {
+            let off = discrepancy(&c.measured, predicted);
+            let mut list: Vec<f64> = off.chunks(len).map(rms_of_finite).collect();
+            list.extend(list.last().copied());
+            list
+        };
+        let (before, after) = (rms(&c.nominal), rms(&c.corrected));
+        let Prefixed { unit, factor } = prefixed(c.unit, size_of(&[&before, &after]));
+        let y_label = format!("rms of the discrepancy [{unit}]");
+        let name = self.corrected_name();
+        let mut chart = LineChart::new(title, "time [s]", y_label)
+            .with(scaled(
+                "model as given",
+                Role::Nominal,
+                &times,
+                &before,
+                factor,
+            ))
+            .with(scaled(name, Role::Corrected, &times, &after, factor));
+        for series in &mut chart.series {
+            series.mark = Mark::Steps;
+        }
+        chart.size = SIZE;
+        Picture::lines("time-strip", chart, None, None).map(Some)
+    }
+
+    fn corrected_name(&self) -> &'static str {
+        corrected_name(self.diagnosis.verdict.status)
     }
 
     /// Power spectral density of both, with the strongest bands shaded; `None` if the record is
     /// too short or its time base unusable.
-    pub(crate) fn spectrum(&self, title: &str) -> Result<Option<String>, ChartError> {
+    pub(crate) fn spectrum(&self, title: &str) -> Result<Option<Picture>, ChartError> {
         let c = self.channel;
         let before = discrepancy(&c.measured, &c.nominal);
         let after = discrepancy(&c.measured, &c.corrected);
@@ -174,7 +238,7 @@ impl Pictured<'_> {
         } else {
             format!("{unit}²/Hz")
         };
-        let corrected = corrected_name(self.diagnosis.verdict.status);
+        let corrected = self.corrected_name();
         let mut chart = SpectrumChart::new(title, format!("density [{square}]"))
             .with(Series::new(
                 "model as given",
@@ -187,7 +251,7 @@ impl Pictured<'_> {
         chart.x_scale = Scale::Log;
         chart.freq_range_hz = (lowest < highest).then_some([lowest, highest]);
         chart.bands = self.bands();
-        chart.to_svg().map(Some)
+        Picture::lines("spectrum", chart.lines(), Some(LINE_POINTS), None).map(Some)
     }
 
     /// Frequencies and densities of the longest gapless part.

@@ -22,6 +22,7 @@ pub fn context() -> ReportContext {
         train_records: vec!["sweep-1.csv".into(), "sweep-2.csv".into()],
         check_records: vec!["production.csv".into()],
         command_line: "simgap diagnose mold-2dof.toml --train sweep-1.csv --train sweep-2.csv --check production.csv --out report".into(),
+        seed: 0,
     }
 }
 
