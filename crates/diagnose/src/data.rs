@@ -15,7 +15,7 @@ const FEWEST: usize = 20;
 const FEWEST_HELD_BACK: usize = 10;
 
 /// Samples the search may use; more make it slower, not wiser.
-const SEARCH_SAMPLES: usize = 16_000;
+const SEARCH_SAMPLES: usize = 12_000;
 
 /// Records in the units of the model, divided.
 pub(crate) struct Data {
