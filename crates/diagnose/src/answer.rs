@@ -12,6 +12,7 @@ use crate::evidence::probabilities;
 use crate::gap::{closed, predict, total};
 use crate::pipeline::Answer;
 use crate::search::name;
+use crate::stand_in::doubts;
 use crate::structure::describe;
 use crate::verdict::{
     CLOSES, CLOSES_BEYOND_RECALIBRATION, IMITATION_LEAVES, IMITATION_STANDS_OUT, INDISTINGUISHABLE,
@@ -23,34 +24,14 @@ const TRIFLE: f64 = 0.01;
 /// Share of what a set leaves beyond the noise that a law of any shape at the place of a named effect
 /// may explain: more, and the law of this place is not the named one.
 const ANOTHER_LAW: f64 = 0.3;
+/// How often a name is right that beats its rivals by far, and one that may be a stand-in; on
+/// generated cases.
+const TRUST: [f64; 2] = [0.97, 0.8];
 /// Single effects whose gap on the check records is computed.
 const SHOWN: usize = 12;
 
 pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
-    let effects: Vec<NamedEffect> = answer
-        .judged
-        .iter()
-        .zip(&answer.estimate.intervals)
-        .map(|(judged, intervals)| NamedEffect {
-            kind: judged.placed.effect.kind().to_string(),
-            at: judged.placed.at.clone(),
-            probability: judged.probability,
-            parameters: judged
-                .placed
-                .effect
-                .parameters()
-                .iter()
-                .zip(intervals)
-                .map(|(parameter, interval)| NamedParameter {
-                    name: parameter.name.to_string(),
-                    value: interval.value,
-                    ci95: interval.ci95,
-                })
-                .collect(),
-            indistinguishable: rivals(answer, judged),
-            evidence: sentences(judged),
-        })
-        .collect();
+    let effects: Vec<NamedEffect> = (0..answer.judged.len()).map(|i| named(answer, i)).collect();
     let mut status = if effects.is_empty() {
         Status::None
     } else if answer
@@ -72,6 +53,42 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
         effects,
         description,
     }
+}
+
+/// The i-th effect of the answer.
+fn named(answer: &Answer, i: usize) -> NamedEffect {
+    let judged = &answer.judged[i];
+    let effect = judged.placed.effect;
+    let intervals = answer.estimate.intervals.get(i).into_iter().flatten();
+    let parameters = effect.parameters().iter().zip(intervals);
+    let doubts = doubts(answer, i);
+    let mut evidence = sentences(judged);
+    if !doubts.is_empty() {
+        evidence.push(format!(
+            "it may only stand in for a law that the catalogue does not have: {}",
+            doubts.join("; ")
+        ));
+    }
+    NamedEffect {
+        kind: effect.kind().to_string(),
+        at: judged.placed.at.clone(),
+        probability: judged.probability * trust(!doubts.is_empty()),
+        parameters: parameters
+            .map(|(parameter, interval)| NamedParameter {
+                name: parameter.name.to_string(),
+                value: interval.value,
+                ci95: interval.ci95,
+            })
+            .collect(),
+        indistinguishable: rivals(answer, judged),
+        stand_in: !doubts.is_empty(),
+        evidence,
+    }
+}
+
+/// What a probability among the rivals is worth: something that is not among them may be the cause.
+fn trust(in_doubt: bool) -> f64 {
+    if in_doubt { TRUST[1] } else { TRUST[0] }
 }
 
 /// Whether structure well above the noise is left that the set does not explain.
@@ -266,12 +283,16 @@ fn probability(answer: &Answer, verdict: &Verdict, placed: &Placed) -> f64 {
     if verdict.effects.is_empty() {
         return 0.0;
     }
+    let mut named = verdict.effects.iter();
+    if let Some(named) = named.find(|e| e.kind == placed.effect.kind() && e.at == placed.at) {
+        return named.probability;
+    }
     answer
         .judged
         .iter()
         .flat_map(shares_of)
         .filter(|(candidate, _)| name(candidate) == name(placed))
-        .map(|(_, probability)| probability)
+        .map(|(_, probability)| probability * TRUST[0])
         .fold(0.0, f64::max)
 }
 

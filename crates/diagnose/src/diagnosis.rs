@@ -191,6 +191,9 @@ pub struct NamedEffect {
     pub parameters: Vec<NamedParameter>,
     /// What this data cannot tell from it.
     pub indistinguishable: Vec<Rival>,
+    /// Whether it shows signs of standing in for a law that the catalogue does not have; the last
+    /// sentence of `evidence` says which.
+    pub stand_in: bool,
     /// Why it is named, one sentence each.
     pub evidence: Vec<String>,
 }

@@ -22,6 +22,7 @@ mod parity;
 mod pipeline;
 mod remainder;
 mod search;
+mod stand_in;
 mod structure;
 mod verdict;
 

@@ -176,7 +176,7 @@ fn earns(
     let shrunk = set.effects().len() == subset.effects().len();
     Ok(relevant(search.problem, &set.fit, &subset.fit)
         && (shrunk || matters(search, set, subset))
-        && confirmed(search, set, subset)?)
+        && (set.effects().len() < 2 || confirmed(search, set, subset)?))
 }
 
 /// Whether the effect that a subset lacks is a nominal parameter that it still adjusts.

@@ -128,6 +128,7 @@ fn friction() -> NamedEffect {
         at: between("mold", "ground"),
         probability: 0.974,
         parameters: vec![NamedParameter { name: "friction_force_n".into(), value: 2104.3, ci95: [2051.0, 2157.6] }],
+        stand_in: false,
         indistinguishable: vec![Rival {
             kind: "stribeck_friction".into(),
             at: between("mold", "ground"),
@@ -254,6 +255,7 @@ pub fn parameters() -> Diagnosis {
             value: 0.9312,
             ci95: [0.9204, 0.9431],
         }],
+        stand_in: false,
         indistinguishable: vec![],
         evidence: vec!["Re-estimating it alone lowers the gap to the noise.".into()],
     }];
@@ -315,6 +317,7 @@ pub fn two_effects() -> Diagnosis {
             value: -1.2e-4,
             ci95: [f64::NEG_INFINITY, f64::INFINITY],
         }],
+        stand_in: false,
         indistinguishable: vec![],
         evidence: vec![],
     });

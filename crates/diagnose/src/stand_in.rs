@@ -1,0 +1,81 @@
+//! Signs that a named effect only stands in for a law that the catalogue does not have.
+
+use simgap_effects::{Family, Parameter, Placed};
+use simgap_estimate::Interval;
+
+use crate::pipeline::Answer;
+
+/// A value this near to the end of its range, relative to it, is at the end.
+const AT_THE_END: f64 = 1e-3;
+/// A shape whose interval spans more than this factor is not seen.
+const UNSEEN: f64 = 10.0;
+/// Share of what is left that a law of any shape at the place of the effect may explain.
+const MISFITS: f64 = 0.3;
+
+/// Why the i-th named effect may be a stand-in; empty for one that shows no sign of it.
+pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
+    let placed = &answer.judged[i].placed;
+    if placed.effect.family() == Family::NominalParameter {
+        return vec![];
+    }
+    let mut doubts = Vec::new();
+    if let Some(other) = company(answer, i) {
+        doubts.push(format!(
+            "{} is named at the same place, and two laws together can imitate a third",
+            other.effect.kind()
+        ));
+    }
+    let fitted = answer.estimate.estimate.effects.get(i);
+    let values = fitted.map_or(&placed.values, |fitted| &fitted.values);
+    let parameters = placed.effect.parameters().iter().zip(values);
+    let shapes = parameters.filter(|(parameter, _)| !parameter.per_record);
+    for (parameter, &value) in shapes.clone() {
+        if ends(parameter).any(|end| (value - end).abs() <= AT_THE_END * end.abs()) {
+            doubts.push(format!(
+                "{} is at the end of its range, {value}",
+                parameter.name
+            ));
+        }
+    }
+    let intervals = answer.estimate.intervals.get(i).into_iter().flatten();
+    for (parameter, interval) in placed.effect.parameters().iter().zip(intervals) {
+        if parameter.neutral.is_none() && !parameter.per_record && is_unseen(interval) {
+            doubts.push(format!("these records hardly show its {}", parameter.name));
+        }
+    }
+    if let Some(law) = &answer.remainder.law
+        && law.at == placed.at
+        && law.share > MISFITS
+    {
+        doubts.push(format!(
+            "a law of another shape at its place explains {:.0} % of what it leaves above the noise",
+            100.0 * law.share
+        ));
+    }
+    doubts
+}
+
+/// Another law of the machine at the place of the i-th effect.
+fn company(answer: &Answer, i: usize) -> Option<&Placed> {
+    let is_law = |placed: &Placed| {
+        matches!(
+            placed.effect.family(),
+            Family::Force | Family::Dynamics | Family::NominalParameter
+        )
+    };
+    let own = &answer.judged[i].placed;
+    let others = answer.judged.iter().enumerate().filter(|(j, _)| *j != i);
+    let mut others = others.map(|(_, judged)| &judged.placed);
+    others.find(|other| is_law(own) && is_law(other) && other.at == own.at)
+}
+
+/// The ends of the range of a parameter that are neither zero nor infinite.
+fn ends(parameter: &Parameter) -> impl Iterator<Item = f64> + use<> {
+    let ends = [parameter.lower, parameter.upper].into_iter();
+    ends.filter(|end| end.is_finite() && *end != 0.0)
+}
+
+fn is_unseen(interval: &Interval) -> bool {
+    let [low, high] = interval.ci95;
+    !(low.is_finite() && high.is_finite()) || low <= 0.0 && high > 0.0 || high / low > UNSEEN
+}
