@@ -18,8 +18,12 @@ pub(crate) enum Command {
     Diagnose(DiagnoseArgs),
     /// Predict the outputs of a model file, effects included, from a record's inputs.
     Simulate(SimulateArgs),
+    /// Compare a measured with a simulated trace, without a model file.
+    Compare(CompareArgs),
     /// Diagnose an embedded record of the mold oscillator and write the report.
     Demo(DemoArgs),
+    /// Write a commented model file to start from, with the columns of a record.
+    Init(InitArgs),
     /// Say what records hold: columns, units, time base, quality.
     Check(CheckArgs),
     /// List the catalogue of effects, or explain one of them.
@@ -119,4 +123,60 @@ pub(crate) struct ManArgs {
     /// Folder for the pages of all commands; without it the first page goes to stdout.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct CompareArgs {
+    /// Measured record (CSV).
+    #[arg(long, value_name = "CSV")]
+    pub(crate) measured: PathBuf,
+    /// Simulated record (CSV), of any simulator.
+    #[arg(long, value_name = "CSV")]
+    pub(crate) simulated: PathBuf,
+    /// Columns to compare where their names differ; may be given several times [default: columns of
+    /// the same name].
+    #[arg(long, value_name = "MEASURED=SIMULATED")]
+    pub(crate) pair: Vec<String>,
+    /// Column of both that drives the machine and is not compared; may be given several times. A
+    /// column that is the same in both is taken for one.
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) input: Vec<String>,
+    /// Take both records to begin at the same moment, whatever their stamps say.
+    #[arg(long)]
+    pub(crate) align_start: bool,
+    /// Folder for comparison.json, comparison.html and compared.csv; without it nothing is written.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value = "human")]
+    pub(crate) format: Format,
+}
+
+/// Machines to start from.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Like {
+    /// One mass on a spring and a damper, driven by a force.
+    Oscillator,
+    /// Two masses in a row, the first driven by a force.
+    TwoMass,
+    /// One mass on a base that moves.
+    Base,
+    /// A positioning axis: a mass on a guide, without a spring.
+    Axis,
+}
+
+#[derive(Args)]
+pub(crate) struct InitArgs {
+    /// Machine to start from [default: what the columns of the record look like].
+    #[arg(long, value_enum)]
+    pub(crate) like: Option<Like>,
+    /// Record whose columns are filled in (CSV).
+    #[arg(long, value_name = "CSV")]
+    pub(crate) record: Option<PathBuf>,
+    /// Model file to write; without it the text goes to stdout.
+    #[arg(long, value_name = "TOML")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overwrite a file that is there.
+    #[arg(long)]
+    pub(crate) force: bool,
 }

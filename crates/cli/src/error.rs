@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use simgap_diagnose::DiagnoseError;
+use simgap_diagnose::compare::CompareError;
 use simgap_effects::EffectError;
 use simgap_model::ModelError;
 use simgap_record::RecordError;
@@ -26,6 +27,12 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Diagnose(#[from] DiagnoseError),
     #[error(transparent)]
+    Compare(#[from] CompareError),
+    #[error(
+        "--pair is \"{found}\", needed is the name of a measured and of a simulated column, such as --pair y=Pos_Mold"
+    )]
+    Pair { found: String },
+    #[error(transparent)]
     Report(#[from] ReportError),
     #[error(
         "{} and {}: the predictions of both would be called \"{stem}\", needed is a different file name for each",
@@ -38,6 +45,8 @@ pub(crate) enum CliError {
     },
     #[error("{}: is a folder, needed is a file or nothing there", .path.display())]
     FolderInPlace { path: PathBuf },
+    #[error("{}: is there already, needed is another --out, or --force to overwrite it", .path.display())]
+    Exists { path: PathBuf },
     #[error("{}: is an input of this very command, needed is another file to write to", .path.display())]
     OverInput { path: PathBuf },
     #[error("unknown kind \"{found}\", nearest are: {near}; simgap effects lists all of them")]

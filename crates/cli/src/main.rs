@@ -4,11 +4,13 @@
 
 mod args;
 mod check;
+mod compare;
 mod demo;
 mod diagnose;
 mod effects;
 mod error;
 mod folder;
+mod init;
 mod input;
 mod progress;
 mod shell;
@@ -45,6 +47,8 @@ fn main() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Demo(args) => demo::run(args),
+        Command::Compare(args) => compare::run(args),
+        Command::Init(args) => init::run(args),
         Command::Check(args) => check::run(args),
         Command::Effects(args) => effects::run(args),
         Command::Completions(args) => {

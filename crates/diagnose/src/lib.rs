@@ -12,6 +12,7 @@
 //! ```
 
 mod answer;
+pub mod compare;
 mod data;
 mod diagnosis;
 mod error;

@@ -20,7 +20,7 @@ const MOST_ENTRIES: usize = 6;
 
 /// Squared discrepancy over the variance of the measured channel, summed over the channels, for
 /// each sample of each run.
-fn energy(check: &Problem, prediction: &Prediction) -> Vec<Vec<f64>> {
+pub(crate) fn energy(check: &Problem, prediction: &Prediction) -> Vec<Vec<f64>> {
     let std = check.output_std();
     prediction
         .discrepancy
@@ -106,6 +106,15 @@ fn trim<T>(list: &mut Vec<T>, share: impl Fn(&T) -> f64) {
 
 /// Bands of the longest check record: the constant part, and the peaks of the spectrum of the rest.
 pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> {
+    bands_marked(check, prediction, |run| marks(check, run))
+}
+
+/// As [`bands`], named by the marks of the record that is looked at.
+pub(crate) fn bands_marked(
+    check: &Problem,
+    prediction: &Prediction,
+    marks: impl Fn(usize) -> Marks,
+) -> Vec<BandShare> {
     let std = check.output_std();
     let Some(run) = (0..check.runs.len()).max_by_key(|&r| check.runs[r].len) else {
         return vec![];
@@ -126,7 +135,7 @@ pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> 
             .for_each(|(sum, d)| *sum += d / (s * s));
         freq_hz = psd.freq_hz;
     }
-    let marks = marks(check, run, &spectrum);
+    let marks = marks(run);
     let total: f64 = density.iter().sum();
     if total <= 0.0 {
         return vec![];
@@ -188,14 +197,18 @@ fn constant_share(signals: &[Vec<f64>], std: &[f64]) -> f64 {
 }
 
 /// Frequencies worth a name.
-struct Marks {
-    excitation_hz: Option<f64>,
-    natural_hz: Vec<f64>,
-    sample_rate_hz: f64,
+pub(crate) struct Marks {
+    /// The line that others are multiples of, and what it is called.
+    pub(crate) main: Option<(f64, &'static str)>,
+    pub(crate) natural_hz: Vec<f64>,
+    pub(crate) sample_rate_hz: f64,
 }
 
-fn marks(check: &Problem, run: usize, spectrum: &dyn Fn(&[f64]) -> Option<Psd>) -> Marks {
+fn marks(check: &Problem, run: usize) -> Marks {
     let signals = &check.runs[run];
+    let options = welch_options(signals.len);
+    let rate = 1.0 / signals.time_step_s;
+    let spectrum = |values: &[f64]| -> Option<Psd> { welch(values, rate, &options).ok() };
     // A single line that carries most of an input is the excitation; free decays have none.
     let excitation_hz = signals.inputs.iter().find_map(|u| {
         let psd = spectrum(u)?;
@@ -222,9 +235,9 @@ fn marks(check: &Problem, run: usize, spectrum: &dyn Fn(&[f64]) -> Option<Psd>) 
         .map(|modes| modes.natural_freq_hz)
         .unwrap_or_default();
     Marks {
-        excitation_hz,
+        main: excitation_hz.map(|f| (f, "the excitation")),
         natural_hz,
-        sample_rate_hz: 1.0 / signals.time_step_s,
+        sample_rate_hz: rate,
     }
 }
 
@@ -234,13 +247,13 @@ fn label(marks: &Marks, freq_hz: f64, half_bin: f64) -> String {
         return "slow drift".into();
     }
     let nyquist = 0.5 * marks.sample_rate_hz;
-    if let Some(f) = marks.excitation_hz {
+    if let Some((f, main)) = marks.main {
         if near(freq_hz, f) {
-            return format!("the excitation at {f:.4} Hz");
+            return format!("{main} at {f:.4} Hz");
         }
         let order = (freq_hz / f).round();
         if (2.0..30.0).contains(&order) && near(freq_hz, order * f) {
-            return format!("harmonic {order} of the excitation at {f:.4} Hz");
+            return format!("harmonic {order} of {main} at {f:.4} Hz");
         }
         let image = ((nyquist - freq_hz) / f).round();
         if (1.0..6.0).contains(&image) && near(freq_hz, nyquist - image * f) {
@@ -286,33 +299,43 @@ pub(crate) fn states(
         list.extend(regions(&flat, "velocity", &path.velocity, &name));
         list.extend(regions(&flat, "displacement", &path.displacement, &name));
     }
-    // What gathers where the motion seldom is comes first.
-    list.sort_by(|a, b| (b.share - b.occupancy).total_cmp(&(a.share - a.occupancy)));
-    list.truncate(MOST_ENTRIES);
-    Ok(list)
+    Ok(ranked(list))
 }
 
-fn regions(energy: &[f64], variable: &'static str, values: &[f64], at: &str) -> Vec<StateShare> {
+/// What gathers where the motion seldom is comes first.
+pub(crate) fn ranked(mut list: Vec<StateShare>) -> Vec<StateShare> {
+    list.sort_by(|a, b| (b.share - b.occupancy).total_cmp(&(a.share - a.occupancy)));
+    list.truncate(MOST_ENTRIES);
+    list
+}
+
+/// Shares of the regions of one variable: about its middle and at its ends.
+pub(crate) fn regions(
+    energy: &[f64],
+    variable: &'static str,
+    values: &[f64],
+    at: &str,
+) -> Vec<StateShare> {
     let total: f64 = energy.iter().sum();
-    let velocity = variable == "velocity";
+    let travel = variable == "displacement";
     let (low, high) = values
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
             (low.min(v), high.max(v))
         });
-    // Velocity turns about zero; displacement about the middle of the travel.
-    let (centre, reach) = if velocity {
-        (0.0, high.abs().max(low.abs()))
-    } else {
+    // Displacement turns about the middle of the travel, velocity and all else about zero.
+    let (centre, reach) = if travel {
         (0.5 * (low + high), 0.5 * (high - low))
+    } else {
+        (0.0, high.abs().max(low.abs()))
     };
     if !(reach > 0.0 && total > 0.0) {
         return vec![];
     }
-    let low = if velocity {
-        "velocity reversal"
-    } else {
-        "middle of the travel"
+    let low = match variable {
+        "velocity" => "velocity reversal",
+        "displacement" => "middle of the travel",
+        _ => "sign change",
     };
     let regions = [
         (low, centre - 0.1 * reach, centre + 0.1 * reach),

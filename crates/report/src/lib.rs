@@ -5,6 +5,7 @@
 //! arguments: no clock, no random identifiers, no files, so equal input gives equal bytes.
 
 pub mod chart;
+pub mod lines;
 pub mod page;
 pub mod summary;
 

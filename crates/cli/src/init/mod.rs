@@ -1,0 +1,94 @@
+//! `simgap init`: a commented model file to fill in, with the columns of a record where there is one.
+
+mod guess;
+mod template;
+
+use std::path::Path;
+
+use simgap_model::Model;
+use simgap_record::{Record, read_csv, write_text_atomic};
+
+use crate::args::InitArgs;
+use crate::error::CliError;
+use crate::folder::{Folder, not_an_input};
+use crate::text::{STRONG, figure, named, shown, styled, table};
+use crate::{say, say_plain};
+use guess::{Roles, roles};
+
+/// Where the text of a named line begins.
+const INDENT: usize = 10;
+
+pub(crate) fn run(args: &InitArgs) -> Result<(), CliError> {
+    if let Some(out) = &args.out {
+        if out.exists() && !args.force {
+            return Err(CliError::Exists { path: out.clone() });
+        }
+        if let Some(record) = &args.record {
+            not_an_input(out, &[record])?;
+        }
+    }
+    let record = args.record.as_deref().map(read_csv).transpose()?;
+    let roles = roles(args.like, record.as_ref());
+    let text = template::model_file(&roles, record.as_ref());
+    let path = || args.out.clone().unwrap_or_else(|| "model.toml".into());
+    // What is handed out must be a model file, whatever the columns are called.
+    Model::from_toml(&text).map_err(|error| CliError::Model {
+        path: path(),
+        error,
+    })?;
+    let Some(out) = &args.out else {
+        say_plain(&text);
+        return Ok(());
+    };
+    let parent = match out.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let folder = Folder::make(parent, &[], std::slice::from_ref(out))?;
+    write_text_atomic(out, &text)?;
+    folder.keep();
+    say(&told(args, &roles, record.as_ref(), out));
+    Ok(())
+}
+
+/// What was taken for what, and what to do now.
+fn told(args: &InitArgs, roles: &Roles, record: Option<&Record>, out: &Path) -> String {
+    let mut text = String::new();
+    if let Some(record) = record {
+        text.push_str(&format!("{}\n", styled(STRONG, &shown(record.name()))));
+        let rows: Vec<Vec<String>> = record
+            .channels()
+            .iter()
+            .map(|channel| {
+                let values = || channel.values.iter().copied();
+                vec![
+                    shown(&channel.name),
+                    shown(channel.unit.symbol()),
+                    figure(values().fold(f64::INFINITY, f64::min)),
+                    figure(values().fold(f64::NEG_INFINITY, f64::max)),
+                    roles.of(&channel.name),
+                ]
+            })
+            .collect();
+        let head = ["column", "unit", "smallest", "largest", "taken for"];
+        table(&mut text, &head, &rows, &[2, 3]);
+        text.push('\n');
+    }
+    for warning in &roles.warnings {
+        named(&mut text, "mind", warning, INDENT);
+    }
+    let model = out.display();
+    named(&mut text, "written", &model.to_string(), INDENT);
+    let next = match &args.record {
+        Some(record) => format!(
+            "put in your numbers, then: simgap simulate {model} --record {} --out predicted.csv",
+            record.display()
+        ),
+        None => format!(
+            "put in your numbers and columns, then: simgap simulate {model} --record RECORD --out \
+             predicted.csv"
+        ),
+    };
+    named(&mut text, "next", &next, INDENT);
+    text
+}
