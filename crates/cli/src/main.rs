@@ -12,12 +12,14 @@ mod error;
 mod folder;
 mod init;
 mod input;
+mod pointer;
 mod progress;
 mod shell;
 mod simulate;
 mod text;
 mod usage;
 
+use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -70,6 +72,13 @@ fn refuse(message: &str) -> ExitCode {
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
     eprintln!("simgap: {line}");
+    // One line is promised; a person at a terminal is also shown the place.
+    let err = anstream::stderr();
+    if err.current_choice() != anstream::ColorChoice::Never || std::io::stderr().is_terminal() {
+        if let Some(picture) = pointer::picture(message) {
+            let _ = err.lock().write_all(picture.as_bytes());
+        }
+    }
     ExitCode::from(BAD_INPUT)
 }
 

@@ -156,3 +156,30 @@ fn verify_colours_are_for_terminals() {
     let refused = String::from_utf8(refused.output().unwrap().stdout).unwrap();
     assert_eq!(refused, plain);
 }
+
+/// What a person at a terminal is shown below the one line.
+#[test]
+fn regress_the_place_is_pointed_at() {
+    let bench = Bench::good();
+    let good = record(60);
+    let mut lines: Vec<&str> = good.lines().collect();
+    lines[6] = "0.05,off,0.001";
+    bench.write("A.csv", lines.join("\n"));
+    let twice = common::MODEL.replace("value = 2.0", "value = = 2.0");
+    let strangers = common::MODEL.replace("[\"block\", \"ground\"]", "[\"blok\", \"ground\"]");
+    bench.write("broken.toml", twice);
+    bench.write("strange.toml", strangers);
+    let mut told = String::new();
+    for model in ["model.toml", "broken.toml", "strange.toml", "none.toml"] {
+        let arguments = ["simulate", model, "--record", "A.csv", "--out", "p.csv"];
+        let mut command = bench.simgap(&arguments);
+        let output = command.env("CLICOLOR_FORCE", "1").output().unwrap();
+        let shown = String::from_utf8(output.stderr).unwrap();
+        told += &anstream::adapter::strip_str(&shown).to_string();
+        told += "\n";
+        // Off a terminal it is one line, as everywhere.
+        let line = bench.refused(&arguments);
+        assert!(told.contains(&line), "{told}");
+    }
+    insta::assert_snapshot!(told);
+}
