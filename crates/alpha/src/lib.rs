@@ -9,6 +9,18 @@
 //! - [`leads`]: what the printed numbers say about damping, weight and 2.499 Hz.
 //!
 //! Nothing here knows the paper's numbers; they come in as arguments.
+//!
+//! ```
+//! use simgap_alpha::{Oscillator, fit_fourier, unknown_force};
+//! use simgap_integrate::inverse::Differentiator;
+//!
+//! // At rest, 3 N from a spring, 4 N applied and 20 N of weight: 19 N are missing.
+//! let plant = Oscillator { mass_kg: 2.0, damping: 1.0, stiffness: 3.0, load: -20.0 };
+//! let found = unknown_force(&plant, &[1.0; 90], &[4.0; 90], 0.01, Differentiator::Park)?;
+//! let fit = fit_fourier(&found.unknown_force, 0.01, found.settling_samples, 2.0, 1)?;
+//! assert!((fit.mean - 19.0).abs() < 1e-9);
+//! # Ok::<(), simgap_alpha::AlphaError>(())
+//! ```
 
 mod beat;
 mod error;

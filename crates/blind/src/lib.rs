@@ -15,6 +15,16 @@
 //!                                                       |                   |
 //!                                                  (diagnosis) -> score <- open
 //! ```
+//!
+//! ```
+//! use simgap_blind::{Level, Recipe, generate};
+//!
+//! let case = generate(1, 3, &Recipe::Kind("coulomb_friction".into()), Level::Standard)?;
+//! // What a diagnosis is given, and what it is not.
+//! assert!(case.model.effects.is_empty() && case.train.len() == 2);
+//! assert_eq!(case.truth.effects[0].kind, "coulomb_friction");
+//! # Ok::<(), simgap_blind::BlindError>(())
+//! ```
 
 mod bench;
 mod case;

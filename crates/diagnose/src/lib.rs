@@ -10,6 +10,52 @@
 //!                                              |
 //!                         gap on the check records, where it lies
 //! ```
+//!
+//! ```
+//! use simgap_diagnose::{Request, Status, diagnose};
+//! use simgap_model::Model;
+//! use simgap_record::parse_csv;
+//!
+//! let text = r#"
+//! schema = "simgap-model/1"
+//! name = "axis"
+//! [[mass]]
+//! name = "table"
+//! value = 0.2
+//! [[spring]]
+//! name = "leaf"
+//! between = ["table", "ground"]
+//! stiffness = 800.0
+//! [[damper]]
+//! name = "guide"
+//! between = ["table", "ground"]
+//! damping = 0.4
+//! [[input]]
+//! channel = "u"
+//! kind = "force"
+//! at = "table"
+//! [[output]]
+//! channel = "y"
+//! kind = "displacement"
+//! at = "table"
+//! "#;
+//! let model = Model::from_toml(text)?;
+//! // A record in which the table follows the force without delay, on a spring of 1000 N/m, with
+//! // the rounding of the third digit as noise.
+//! let mut csv = String::from("t [s],u [N],y [mm]\n");
+//! for k in 0..300 {
+//!     let t = 0.01 * f64::from(k);
+//!     let force = 5.0 * (1.7 * t).sin() + 3.0 * (0.9 * t).cos();
+//!     csv += &format!("{t:.2},{force:.4},{:.3}\n", force);
+//! }
+//! let records = [parse_csv("slow.csv", csv.as_bytes())?];
+//! let request = Request { model: &model, train: &records, check: &[], withheld: &[] };
+//! let outcome = diagnose(&request, &|_| {})?;
+//! let gap = &outcome.diagnosis.gap;
+//! assert!(gap.corrected < 0.1 * gap.nominal);
+//! assert_eq!(outcome.diagnosis.verdict.status, Status::Parameters);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod answer;
 pub mod compare;

@@ -3,6 +3,22 @@
 //! An effect says what it is called, where it can sit, which parameters it has and what it does;
 //! fit, report, documentation, tests and withheld cases follow from that. To add one, write its
 //! file and add its line to the list in `catalogue.rs`.
+//!
+//! ```
+//! use simgap_effects::{Action, SiteKind, catalogue, find};
+//! use simgap_integrate::exact::MemberMotion;
+//!
+//! assert_eq!(catalogue().len(), 38);
+//! let spring = find("cubic_stiffness").ok_or("not in the catalogue")?;
+//! assert_eq!(spring.parameters()[0].unit, "N/m^3");
+//! // 2000 N/m³ at 0.1 m: 2 N.
+//! let Action::Force(law) = spring.action(&[2000.0]) else {
+//!     return Err("not a force".into());
+//! };
+//! let motion = MemberMotion { displacement: 0.1, ..MemberMotion::default() };
+//! assert!((law.force(motion) - 2.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod catalogue;
 mod effect;

@@ -3,6 +3,66 @@
 //!
 //! A [`Problem`] is a nominal model with its runs; a [`Fit`] is what the data say about one set of
 //! effects, with the nominal parameters held near their values and the initial states free.
+//!
+//! ```
+//! use simgap_effects::{Placed, find};
+//! use simgap_estimate::{Problem, Start, Weights, fit};
+//! use simgap_model::{Location, Model};
+//! use simgap_simulate::{Run, Simulator};
+//!
+//! let text = r#"
+//! schema = "simgap-model/1"
+//! name = "axis"
+//! [[mass]]
+//! name = "table"
+//! value = 2.0
+//! [[spring]]
+//! name = "leaf"
+//! between = ["table", "ground"]
+//! stiffness = 800.0
+//! [[damper]]
+//! name = "guide"
+//! between = ["table", "ground"]
+//! damping = 4.0
+//! [[input]]
+//! channel = "u"
+//! kind = "force"
+//! at = "table"
+//! [[output]]
+//! channel = "y"
+//! kind = "displacement"
+//! at = "table"
+//! "#;
+//! let model = Model::from_toml(text)?;
+//! let at = Location::Between(["table".into(), "ground".into()]);
+//! let spring = |factor: f64| -> Result<Placed, &str> {
+//!     let kind = find("stiffness_error").ok_or("not in the catalogue")?;
+//!     Ok(Placed::new(kind, at.clone(), vec![factor]))
+//! };
+//! // The machine's spring is 10 % stiffer than the model's.
+//! let mut run = Run {
+//!     name: "sweep".into(),
+//!     start_s: 0.0,
+//!     time_step_s: 0.01,
+//!     len: 400,
+//!     first_index: 0,
+//!     inputs: vec![(0..400).map(|n| (0.002 * f64::from(n * n)).sin()).collect()],
+//!     measured: vec![None],
+//! };
+//! let truth = Simulator::new(&model, &[spring(1.1)?], 1)?.predict(&run, &[0.001, 0.0])?;
+//! run.measured = truth.into_iter().map(Some).collect();
+//!
+//! let problem = Problem::new(&model, vec![run])?;
+//! let start = Start {
+//!     effects: vec![spring(1.01)?],
+//!     nominal: vec![],
+//!     initial: problem.initial_guess(),
+//! };
+//! let found = fit(&problem, &start, &Weights::independent(1))?;
+//! assert!((found.estimate.effects[0].values[0] - 1.1).abs() < 1e-3);
+//! assert!((found.estimate.initial[0][0] - 0.001).abs() < 1e-5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod fit;
 mod initial;

@@ -2,6 +2,40 @@
 //!
 //! A model is read from text ([`Model::from_toml`]); this crate touches no files. Effects are carried
 //! as written ([`EffectEntry`]); the catalogue one floor up gives them meaning.
+//!
+//! ```
+//! use simgap_model::{Model, undamped_modes};
+//!
+//! let model = Model::from_toml(r#"
+//! schema = "simgap-model/1"
+//! name = "two blocks"
+//! [[mass]]
+//! name = "lower"
+//! value = 1.0
+//! [[mass]]
+//! name = "upper"
+//! value = 1.0
+//! [[spring]]
+//! name = "a"
+//! between = ["lower", "ground"]
+//! stiffness = 100.0
+//! [[spring]]
+//! name = "b"
+//! between = ["upper", "lower"]
+//! stiffness = 100.0
+//! [[output]]
+//! channel = "y"
+//! kind = "displacement"
+//! at = "upper"
+//! "#)?;
+//! let matrices = model.matrices()?;
+//! assert_eq!(matrices.stiffness_matrix[(0, 0)], 200.0);
+//! // ω² = 100 (3 ∓ √5) / 2
+//! let modes = undamped_modes(&matrices)?;
+//! let lowest = (50.0 * (3.0 - 5.0_f64.sqrt())).sqrt() / std::f64::consts::TAU;
+//! assert!((modes.natural_freq_hz[0] - lowest).abs() < 1e-9);
+//! # Ok::<(), simgap_model::ModelError>(())
+//! ```
 
 mod check;
 mod dense;

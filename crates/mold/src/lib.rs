@@ -7,6 +7,15 @@
 //!   so. Each of the two readings of the 50 − f lines ([`Reading`]) can be built at any sample rate.
 //!
 //! Source of every published number: `park-mold`, through [`simgap_tables`].
+//!
+//! ```
+//! use simgap_mold::{OneDof, TwoDof};
+//!
+//! let matrices = TwoDof::published(1.0)?.model()?.matrices()?;
+//! assert_eq!(matrices.mass_matrix[(1, 1)], 7000.0);
+//! assert!((OneDof::published()?.natural_freq_hz() - 2.522).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod error;
 mod noise;

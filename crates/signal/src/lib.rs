@@ -21,6 +21,20 @@
 //! amplitude:  x(t) = A cos(2π f t + φ), f on a bin     ->  amplitude A, phase φ at the first sample
 //! density:    Σ density · Δf = mean square of the record   (one-sided, unit²/Hz)
 //! ```
+//!
+//! # Example
+//!
+//! ```
+//! use simgap_signal::{Trend, Window, spectrum::spectrum};
+//!
+//! // 0.3 at 12 Hz, on a bin of a record of one second.
+//! let tone: Vec<f64> = (0..500)
+//!     .map(|n| 0.3 * (std::f64::consts::TAU * 12.0 * f64::from(n) / 500.0).cos())
+//!     .collect();
+//! let found = spectrum(&tone, 500.0, Window::Hann, Trend::Mean)?;
+//! assert!((found.amplitude[12] - 0.3).abs() < 1e-12);
+//! # Ok::<(), simgap_signal::SignalError>(())
+//! ```
 
 mod check;
 pub mod correlation;
