@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::record_args::RecordArgs;
+
 /// Tells why the real machine does not move like the model.
 #[derive(Parser)]
 #[command(name = "simgap", version, max_term_width = 100)]
@@ -47,12 +49,14 @@ pub(crate) enum Format {
 pub(crate) struct DiagnoseArgs {
     /// Model file (TOML, schema simgap-model/1).
     pub(crate) model: PathBuf,
-    /// Record to learn from (CSV); may be given several times.
-    #[arg(long, required = true, value_name = "CSV")]
+    /// Record to learn from (CSV, MAT, UFF and more); may be given several times.
+    #[arg(long, required = true, value_name = "RECORD")]
     pub(crate) train: Vec<PathBuf>,
     /// Record to judge by; without one the last third of each training record is held back.
-    #[arg(long, value_name = "CSV")]
+    #[arg(long, value_name = "RECORD")]
     pub(crate) check: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) records: RecordArgs,
     /// Folder for diagnosis.json, corrected.toml, predictions/ and report.html.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
@@ -74,9 +78,11 @@ pub(crate) struct DiagnoseArgs {
 pub(crate) struct SimulateArgs {
     /// Model file (TOML, schema simgap-model/1).
     pub(crate) model: PathBuf,
-    /// Record whose inputs drive the model (CSV).
-    #[arg(long, value_name = "CSV")]
+    /// Record whose inputs drive the model (CSV, MAT, UFF and more).
+    #[arg(long, value_name = "RECORD")]
     pub(crate) record: PathBuf,
+    #[command(flatten)]
+    pub(crate) records: RecordArgs,
     /// Predictions (CSV).
     #[arg(long, value_name = "CSV")]
     pub(crate) out: PathBuf,

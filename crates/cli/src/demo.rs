@@ -5,6 +5,7 @@ use simgap_record::{ensure_writable_dir, write_text_atomic};
 use crate::args::{DemoArgs, DiagnoseArgs, Format};
 use crate::diagnose;
 use crate::error::CliError;
+use crate::record_args::RecordArgs;
 
 /// Generated records of the mold oscillator; `fixtures/demo/README.md` says how they were made.
 const FILES: [(&str, &str); 5] = [
@@ -40,6 +41,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
         model: args.out.join("model.toml"),
         train: vec![args.out.join("train-1.csv"), args.out.join("train-2.csv")],
         check: vec![args.out.join("check.csv")],
+        records: RecordArgs::default(),
         out: args.out.join("diagnosis"),
         withhold: vec![],
         jobs: None,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use simgap_diagnose::{CheckSeries, Outcome, Request, diagnose};
 use simgap_model::Model;
-use simgap_record::{write_csv_atomic, write_text_atomic};
+use simgap_record::{Record, write_csv_atomic, write_text_atomic};
 use simgap_report::page::{PictureFile, ReportInput, report};
 
 use crate::args::{DiagnoseArgs, Format};
@@ -37,10 +37,11 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     let read = |paths: &[PathBuf]| {
         paths
             .iter()
-            .map(|path| input::record(path, &model))
+            .map(|path| input::record(path, &model, &args.records))
             .collect::<Result<Vec<_>, _>>()
     };
-    let (train, check) = (read(&args.train)?, read(&args.check)?);
+    let (train, read_notes) = apart(read(&args.train)?);
+    let (check, check_notes) = apart(read(&args.check)?);
     // A folder that cannot be written to is told before the work, not after it.
     let stems: Vec<String> = judged.iter().map(|path| stem(path)).collect();
     let folders = [PREDICTIONS, PICTURES];
@@ -58,6 +59,8 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     let all = train.iter().chain(&check);
     let conversions = all.flat_map(|record| input::conversions(record, &model));
     outcome.diagnosis.notes.extend(conversions);
+    let notes = &mut outcome.diagnosis.notes;
+    notes.extend(read_notes.into_iter().chain(check_notes));
     let context = simgap_report::page::ReportContext {
         program_version: env!("CARGO_PKG_VERSION").to_string(),
         model_file: file_name(&args.model),
@@ -79,6 +82,15 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         }
     }
     Ok(())
+}
+
+/// Records, and the notes on all of them.
+fn apart(inputs: Vec<input::Input>) -> (Vec<Record>, Vec<String>) {
+    let (records, notes): (Vec<_>, Vec<_>) = inputs
+        .into_iter()
+        .map(|input| (input.record, input.notes))
+        .unzip();
+    (records, notes.concat())
 }
 
 fn summary(outcome: &Outcome) -> String {

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use simgap_effects::Placed;
 use simgap_model::Model;
-use simgap_record::{Quantity, Record, RecordError, read_csv_some};
+use simgap_record::{Quantity, ReadOptions, Record, RecordError, read_file};
 use simgap_simulate::{input_quantity, output_quantity};
 
 use crate::error::CliError;
+use crate::record_args::RecordArgs;
 
 /// No model file is longer, bytes; a record handed over as the model is refused before it fills
 /// the memory.
@@ -41,17 +42,44 @@ pub(crate) fn model(path: &Path) -> Result<Model, CliError> {
     Ok(model)
 }
 
+/// A record of what a model names, and what was guessed or changed to read it, one sentence each.
+pub(crate) struct Input {
+    pub(crate) record: Record,
+    pub(crate) notes: Vec<String>,
+}
+
 /// Reads of a record what the model names, inputs and outputs; other columns may hold anything.
-pub(crate) fn record(path: &Path, model: &Model) -> Result<Record, CliError> {
-    let names: Vec<&str> = inputs(model).chain(outputs(model)).collect();
-    checked(path, model, read_csv_some(path, &names, &[])?)
+pub(crate) fn record(path: &Path, model: &Model, args: &RecordArgs) -> Result<Input, CliError> {
+    let names = inputs(model).chain(outputs(model));
+    read(path, model, args, ReadOptions::channels(names, [""; 0]))
 }
 
 /// As [`record`], of a record that need not hold the outputs.
-pub(crate) fn record_of_inputs(path: &Path, model: &Model) -> Result<Record, CliError> {
-    let (needed, welcome): (Vec<&str>, Vec<&str>) =
-        (inputs(model).collect(), outputs(model).collect());
-    checked(path, model, read_csv_some(path, &needed, &welcome)?)
+pub(crate) fn record_of_inputs(
+    path: &Path,
+    model: &Model,
+    args: &RecordArgs,
+) -> Result<Input, CliError> {
+    let options = ReadOptions::channels(inputs(model), outputs(model));
+    read(path, model, args, options)
+}
+
+fn read(
+    path: &Path,
+    model: &Model,
+    args: &RecordArgs,
+    options: ReadOptions,
+) -> Result<Input, CliError> {
+    let map = args.map().map_err(RecordError::from)?;
+    let channels: Vec<&str> = inputs(model).chain(outputs(model)).collect();
+    map.check_channels(&channels).map_err(RecordError::from)?;
+    let options = options.with_map(map).with_mend(args.mend());
+    let reading = read_file(path, &options)?;
+    let name = reading.record.name();
+    let notes = reading.notes.iter().map(|note| format!("{name}: {note}"));
+    let notes = notes.collect();
+    let record = checked(path, model, reading.record)?;
+    Ok(Input { record, notes })
 }
 
 fn inputs(model: &Model) -> impl Iterator<Item = &str> {

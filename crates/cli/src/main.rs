@@ -15,6 +15,7 @@ mod input;
 mod pointer;
 mod progress;
 mod shell;
+mod record_args;
 mod simulate;
 mod text;
 mod usage;

@@ -17,7 +17,8 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     let (folder, files) = (parent(&args.out), [args.out.clone()]);
     Folder::attempt(folder, &[], &files)?;
     let model = input::model(&args.model)?;
-    let record = input::record_of_inputs(&args.record, &model)?;
+    let input::Input { record, notes } =
+        input::record_of_inputs(&args.record, &model, &args.records)?;
     let failed = |error| CliError::Simulate {
         path: args.record.clone(),
         error,
@@ -73,6 +74,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     write_csv_atomic(&args.out, &headers, &columns)?;
     folder.keep();
     say(&format!("{}\n", args.out.display()));
+    for note in notes {
+        say(&format!("note: {note}\n"));
+    }
     Ok(())
 }
 

@@ -254,8 +254,7 @@ fn regress_records() {
         ("empty cell", with_line(7, "0.05,,0.0")),
         ("short row", with_line(7, "0.05,1.0")),
         ("long row", with_line(7, "0.05,1.0,0.0,0.0")),
-        ("semicolons", good.replace(',', ";")),
-        ("decimal commas", good.replace(',', ";").replace('.', ",")),
+        ("decimal commas", good.replace('.', ",")),
         ("uneven time", with_line(30, "0.2838,1.0,0.0")),
         (
             "missing row",

@@ -1,12 +1,12 @@
 //! Reading a record from CSV text.
 
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use crate::Channel;
 use crate::csv_header::{Header, Wanted, check_separator, parse_header};
 use crate::error::{Place, RecordError, shortened};
+use crate::open::opened;
 use crate::record::{Origin, Record};
 
 /// Most rows that are read: 80 minutes at 1 kHz. Reading stops there.
@@ -14,7 +14,7 @@ pub const MAX_ROWS: usize = 5_000_000;
 /// Longest line that is read, bytes. Keeps a file without line ends out of memory.
 pub const MAX_LINE_BYTES: usize = 1 << 20;
 /// Bytes asked from the system at once.
-const BUFFER_BYTES: usize = 1 << 17;
+pub(crate) const BUFFER_BYTES: usize = 1 << 17;
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Reads a record from a CSV file.
@@ -68,22 +68,7 @@ pub fn parse_csv(name: &str, text: impl Read) -> Result<Record, RecordError> {
 
 fn read(path: &Path, wanted: Option<Wanted<'_>>) -> Result<Record, RecordError> {
     let label = path.display().to_string();
-    let refused = |source: io::Error| match source.kind() {
-        io::ErrorKind::NotFound => RecordError::NotFound {
-            file: label.clone(),
-        },
-        _ => RecordError::Unreadable {
-            file: label.clone(),
-            source,
-        },
-    };
-    let file = File::open(path).map_err(refused)?;
-    if file.metadata().map_err(refused)?.is_dir() {
-        return Err(RecordError::IsDirectory { file: label });
-    }
-    let name = path
-        .file_name()
-        .map_or_else(|| label.clone(), |n| n.to_string_lossy().into_owned());
+    let (file, name) = opened(path, &label)?;
     let text = BufReader::with_capacity(BUFFER_BYTES, file);
     Reader::new(&label, text).record(name, wanted)
 }
@@ -92,7 +77,7 @@ fn read(path: &Path, wanted: Option<Wanted<'_>>) -> Result<Record, RecordError> 
 ///
 /// The lines are split here and only a line with a quotation mark goes through the csv crate: its
 /// reader counts CRLF lines one late, and a message must name the right line.
-struct Reader<'a, R> {
+pub(crate) struct Reader<'a, R> {
     label: &'a str,
     text: R,
     buffer: Vec<u8>,
@@ -106,7 +91,7 @@ struct Blank {
 }
 
 impl<'a, R: BufRead> Reader<'a, R> {
-    fn new(label: &'a str, text: R) -> Self {
+    pub(crate) fn new(label: &'a str, text: R) -> Self {
         Reader {
             label,
             text,
@@ -196,7 +181,11 @@ impl<'a, R: BufRead> Reader<'a, R> {
         Err(RecordError::Empty { file: self.file() })
     }
 
-    fn record(mut self, name: String, wanted: Option<Wanted<'_>>) -> Result<Record, RecordError> {
+    pub(crate) fn record(
+        mut self,
+        name: String,
+        wanted: Option<Wanted<'_>>,
+    ) -> Result<Record, RecordError> {
         let header = self.header(wanted)?;
         let mut table = Table::new(&header);
         let mut blanks: Vec<Blank> = Vec::new();

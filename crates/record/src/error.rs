@@ -3,15 +3,18 @@
 use std::fmt;
 use std::io;
 
-use crate::{MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS, Quantity, UNEVEN_FRACTION, UnitKind};
+use crate::faults::{FormatFault, MapFault, MendFault, SelectionFault, TextFault};
+use crate::{Format, MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS, Quantity, UNEVEN_FRACTION, UnitKind};
 
 /// Where in a record a value stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// Line of a file, counted from 1.
     Line(u64),
-    /// Row of a record made in memory, counted from 0.
+    /// Row of a record without lines, counted from 0.
     Row(usize),
+    /// Byte of a file, counted from 0.
+    Byte(u64),
     /// Names of a record made in memory.
     Names,
 }
@@ -21,6 +24,7 @@ impl fmt::Display for Place {
         match self {
             Place::Line(line) => write!(f, "line {line}"),
             Place::Row(row) => write!(f, "row {row}"),
+            Place::Byte(byte) => write!(f, "byte {byte}"),
             Place::Names => f.write_str("names"),
         }
     }
@@ -38,7 +42,7 @@ pub enum RecordError {
         file: String,
     },
     /// A directory where a file is needed.
-    #[error("{file}: is a directory, but a CSV file is needed")]
+    #[error("{file}: is a directory, but a file is needed")]
     IsDirectory {
         /// Path as given.
         file: String,
@@ -301,12 +305,53 @@ pub enum RecordError {
         /// The columns there are.
         has: String,
     },
+    /// A channel map that is none.
+    #[error(transparent)]
+    Map(#[from] MapFault),
+    /// Columns that cannot be taken.
+    #[error("{file}: {fault}")]
+    Selection {
+        /// File or record.
+        file: String,
+        /// What is wrong.
+        fault: SelectionFault,
+    },
+    /// Missing samples or uneven stamps beyond what can be made good.
+    #[error("{file}: {fault}")]
+    Mending {
+        /// File or record.
+        file: String,
+        /// What is wrong.
+        fault: MendFault,
+    },
+    /// A table of text that cannot be taken apart.
+    #[error("{file}: {fault}")]
+    Text {
+        /// File or record.
+        file: String,
+        /// What is wrong.
+        fault: TextFault,
+    },
+    /// A file that its format does not allow, or this reader.
+    #[error("{file}: {fault} ({format})")]
+    Format {
+        /// File or record.
+        file: String,
+        /// Format of the file.
+        format: Format,
+        /// What is wrong.
+        fault: FormatFault,
+    },
+    /// A file too large to be held in memory.
+    #[error("{file}: longer than {most} bytes, which is the limit; split the record")]
+    TooLarge {
+        /// File.
+        file: String,
+        /// Longest that is read, bytes.
+        most: u64,
+    },
     /// A unit that does not measure what the model takes from the channel.
-    #[error(
-        "column '{channel}' is in [{unit}], which is {kind}, but {wanted} is needed ({}), or a \
-         gain in the model",
-        wanted.examples()
-    )]
+    #[error("column '{channel}' {}", misfit(unit, *kind, *wanted))]
     UnitMismatch {
         /// Name of the column.
         channel: String,
@@ -349,6 +394,19 @@ pub enum RecordError {
         /// What the system says.
         source: io::Error,
     },
+}
+
+fn misfit(unit: &str, kind: UnitKind, wanted: Quantity) -> String {
+    let examples = wanted.examples();
+    if unit.is_empty() {
+        return format!(
+            "has no unit, but {wanted} is needed ({examples}): in the header, in a channel map \
+             such as 'y=y [mm]', or a gain in the model"
+        );
+    }
+    format!(
+        "is in [{unit}], which is {kind}, but {wanted} is needed ({examples}), or a gain in the model"
+    )
 }
 
 /// A number with the digits that matter in a message.

@@ -319,7 +319,7 @@ fn regress_messages_about_files_and_directories() {
     });
     insta::assert_snapshot!(lines.join("\n"), @r"
     DIR/missing.csv: no such file
-    DIR: is a directory, but a CSV file is needed
+    DIR: is a directory, but a file is needed
     DIR/A.csv: 2 row(s) of data found, but at least 8 are needed
     DIR/A.csv/B.csv: cannot be read: Not a directory (os error 20)
     DIR/A.csv: is a file, but a directory is needed

@@ -1,0 +1,215 @@
+//! What can be wrong with files of loggers and measurement programs: the parts of
+//! [`crate::RecordError`] that belong to one step of reading each.
+
+use crate::error::{Place, digits};
+
+/// What is wrong with a channel map.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapFault {
+    /// An entry of another form.
+    #[error(
+        "'{found}' found in the channel map, but CHANNEL=COLUMN or 'CHANNEL=COLUMN [UNIT]' is needed"
+    )]
+    Entry {
+        /// The entry, shortened.
+        found: String,
+    },
+    /// Two entries about one channel.
+    #[error("channel '{channel}' is mapped twice, but one column is needed for it")]
+    Twice {
+        /// Name of the channel.
+        channel: String,
+    },
+    /// An entry about a channel nobody asks for.
+    #[error("the channel map names '{channel}', but the model has {has}{near}")]
+    Channel {
+        /// Name of the channel.
+        channel: String,
+        /// The channels there are.
+        has: String,
+        /// Those like it, ready for the message.
+        near: String,
+    },
+}
+
+/// Why the columns asked for cannot be taken.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SelectionFault {
+    /// No column of that name.
+    #[error("column '{wanted}' is needed, but the file has {has}{near}")]
+    Unknown {
+        /// The name needed.
+        wanted: String,
+        /// The columns there are.
+        has: String,
+        /// Those like it, ready for the message.
+        near: String,
+    },
+    /// Two columns of one name.
+    #[error("columns {first} and {second} are both named '{name}'; names must differ")]
+    Ambiguous {
+        /// The name.
+        name: String,
+        /// First column of that name, counted from 1.
+        first: usize,
+        /// Second column of that name, counted from 1.
+        second: usize,
+    },
+    /// A time column whose unit is no time.
+    #[error("time column '{name}' is in [{unit}], but s, ms, us or min is needed")]
+    TimeUnit {
+        /// Name of the time column.
+        name: String,
+        /// Its unit.
+        unit: String,
+    },
+    /// Nothing that could be the time base.
+    #[error(
+        "no time base found; the file has {has}; name its time with a map such as 't={example}'"
+    )]
+    NoTime {
+        /// The columns there are.
+        has: String,
+        /// One of them.
+        example: String,
+    },
+    /// No columns at all.
+    #[error("no column of numbers found, but a time base and channels are needed")]
+    Nothing,
+}
+
+/// Why a fault of a record cannot be made good.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MendFault {
+    /// More samples missing than there may be.
+    #[error(
+        "{missing} of {of} samples of column '{column}' are missing, but at most {most_percent} % may be"
+    )]
+    TooManyMissing {
+        /// Name of the column.
+        column: String,
+        /// Samples missing.
+        missing: usize,
+        /// Samples there should be.
+        of: usize,
+        /// Most that may be missing, per cent.
+        most_percent: u32,
+    },
+    /// A gap too long to be bridged.
+    #[error("{at}: the time step is {} s here and {} s as a rule, but a gap of at most {most} steps can be bridged; split the record there", digits(*found), digits(*usual))]
+    Gap {
+        /// Line or row of the stamp that ends the gap.
+        at: Place,
+        /// Length of the gap, s.
+        found: f64,
+        /// Usual step, s.
+        usual: f64,
+        /// Longest gap that is bridged, steps.
+        most: f64,
+    },
+}
+
+/// What is wrong with a table of text of unknown layout.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TextFault {
+    /// Bytes that no text holds.
+    #[error(
+        "line {line}: bytes that are no text, and no format that is known; a table of text (CSV), Parquet, MAT, UFF or TDMS is needed"
+    )]
+    NotText {
+        /// Line, counted from 1.
+        line: u64,
+    },
+    /// No table of numbers.
+    #[error(
+        "line 1: '{first}' found, but no table of numbers in the first {looked_at} line(s), separated by comma, semicolon or tab (commas cannot separate numbers with decimal commas)"
+    )]
+    NoTable {
+        /// Lines that were looked at.
+        looked_at: usize,
+        /// The first one with something in it, shortened.
+        first: String,
+    },
+    /// Numbers without a header.
+    #[error(
+        "line {line}: {width} columns of numbers begin here, but as many names are needed in a line above them"
+    )]
+    NoHeader {
+        /// First line of the numbers, counted from 1.
+        line: u64,
+        /// Their columns.
+        width: usize,
+    },
+    /// A cell of the time column that is no stamp.
+    #[error(
+        "line {line}: column '{column}' holds '{found}', but a date and time such as 2024-03-01T12:00:00.500 is needed"
+    )]
+    NotAStamp {
+        /// Line, counted from 1.
+        line: u64,
+        /// Name of the column.
+        column: String,
+        /// The text, shortened.
+        found: String,
+    },
+    /// A 30 February.
+    #[error(
+        "line {line}: column '{column}' holds a date there is not, or in another form than the rows above"
+    )]
+    NoSuchDate {
+        /// Line, counted from 1.
+        line: u64,
+        /// Name of the column.
+        column: String,
+    },
+}
+
+/// What is wrong with a file of a binary or otherwise fixed format.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FormatFault {
+    /// The file ends, or claims more than it holds.
+    #[error(
+        "{at}: {needed} byte(s) of {what} are needed, but {left} are left; the file is cut off or damaged"
+    )]
+    Truncated {
+        /// Where the missing bytes begin.
+        at: Place,
+        /// What they would be.
+        what: &'static str,
+        /// How many there should be.
+        needed: u64,
+        /// How many there are.
+        left: u64,
+    },
+    /// Something that the format does not allow.
+    #[error("{at}: {found} found, but {needed} is needed")]
+    Malformed {
+        /// Where.
+        at: Place,
+        /// What was found.
+        found: String,
+        /// What is needed.
+        needed: &'static str,
+    },
+    /// Something that the format allows and this reader does not take.
+    #[error("{found} found, which is not read; {instead}")]
+    Unsupported {
+        /// What was found.
+        found: String,
+        /// What to do instead.
+        instead: &'static str,
+    },
+    /// More than is read.
+    #[error("more than {most} {what} found, which is the limit")]
+    TooMuch {
+        /// Most that is read.
+        most: u64,
+        /// Of what.
+        what: &'static str,
+    },
+}

@@ -1,0 +1,347 @@
+//! Where in a table of text the header, the units and the numbers stand.
+
+use std::borrow::Cow;
+
+use super::cells::{Cell, Dialect, classify, split};
+use crate::error::{RecordError, shortened};
+use crate::faults::TextFault;
+use crate::select::Heading;
+use crate::{Unit, UnitKind};
+
+/// Lines that are looked at.
+const LOOKED_AT: usize = 2000;
+/// So many rows of one shape begin a table, or as many as there are.
+const LIKE_ROWS: usize = 3;
+
+/// Dialects in the order in which they win a tie.
+const DIALECTS: [Dialect; 6] = [
+    Dialect {
+        separator: ';',
+        decimal_comma: false,
+    },
+    Dialect {
+        separator: '\t',
+        decimal_comma: false,
+    },
+    Dialect {
+        separator: ',',
+        decimal_comma: false,
+    },
+    Dialect {
+        separator: ';',
+        decimal_comma: true,
+    },
+    Dialect {
+        separator: '\t',
+        decimal_comma: true,
+    },
+    // Only in quotation marks.
+    Dialect {
+        separator: ',',
+        decimal_comma: true,
+    },
+];
+
+/// How a table is taken apart. Lines count from 0 here.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Layout {
+    pub(crate) dialect: Dialect,
+    /// No number that was looked at has a decimal sign.
+    pub(crate) undecided: bool,
+    pub(crate) header: usize,
+    pub(crate) units: Option<usize>,
+    /// Line of the first row.
+    pub(crate) first_row: usize,
+    pub(crate) headings: Vec<Heading>,
+}
+
+/// Guesses the layout from the first lines of a file.
+pub(crate) fn guess<'a>(
+    file: &str,
+    lines: impl Iterator<Item = &'a str>,
+) -> Result<Layout, RecordError> {
+    let lines: Vec<&str> = lines.take(LOOKED_AT).collect();
+    let mut best: Option<(f64, Block)> = None;
+    for dialect in DIALECTS {
+        if let Some(block) = block(&lines, dialect)
+            && best.as_ref().is_none_or(|(score, _)| block.score > *score)
+        {
+            best = Some((block.score, block));
+        }
+    }
+    let Some((_, block)) = best else {
+        return Err(no_table(file, &lines));
+    };
+    let undecided = DIALECTS.iter().any(|&other| {
+        let Dialect {
+            separator,
+            decimal_comma,
+        } = block.dialect;
+        other
+            == Dialect {
+                separator,
+                decimal_comma: !decimal_comma,
+            }
+            && separator != ','
+            && self::block(&lines, other).is_some_and(|tie| tie.score == block.score)
+    });
+    headed(file, &lines, &block, undecided)
+}
+
+fn no_table(file: &str, lines: &[&str]) -> RecordError {
+    match lines.iter().find(|line| !line.trim().is_empty()) {
+        None => RecordError::Empty {
+            file: file.to_owned(),
+        },
+        Some(first) => RecordError::Text {
+            file: file.to_owned(),
+            fault: TextFault::NoTable {
+                looked_at: lines.len(),
+                first: shortened(first.trim()),
+            },
+        },
+    }
+}
+
+/// Rows of numbers of one width.
+struct Block {
+    dialect: Dialect,
+    /// Line of the first row.
+    start: usize,
+    width: usize,
+    score: f64,
+}
+
+/// Width, and how many cells hold numbers or stamps; `None` if this is no row of a table.
+fn shape(line: &str, dialect: Dialect) -> Option<(usize, usize)> {
+    if line.trim().is_empty() {
+        return None;
+    }
+    let cells = split(line, dialect.separator)?;
+    let quoted = line.contains('"');
+    let mut numbers = 0;
+    for cell in &cells {
+        match classify(
+            cell,
+            dialect.decimal_comma && (dialect.separator != ',' || quoted),
+        ) {
+            Cell::Number(_) | Cell::Stamp(_) => numbers += 1,
+            Cell::Missing | Cell::Text => {}
+        }
+    }
+    let first = classify(cells.first()?, dialect.decimal_comma);
+    let starts = matches!(first, Cell::Number(_) | Cell::Stamp(_));
+    (cells.len() >= 2 && (numbers >= 2 || (starts && numbers == 1 && cells.len() == 2)))
+        .then_some((cells.len(), numbers))
+}
+
+/// A run of rows of one width, without other lines than blank ones.
+struct Run {
+    start: usize,
+    width: usize,
+    rows: usize,
+    /// Whether it goes on to the last line that is looked at.
+    last: bool,
+    /// Share of the cells that hold numbers, summed over the rows.
+    share: f64,
+}
+
+fn runs(lines: &[&str], dialect: Dialect) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    let mut open = false;
+    for (k, line) in lines.iter().enumerate() {
+        if line.trim().is_empty() {
+            continue;
+        }
+        let Some((width, numbers)) = shape(line, dialect) else {
+            open = false;
+            continue;
+        };
+        let share = numbers as f64 / width as f64;
+        match runs.last_mut() {
+            Some(run) if open && run.width == width => {
+                run.rows += 1;
+                run.share += share;
+            }
+            _ => runs.push(Run {
+                start: k,
+                width,
+                rows: 1,
+                last: false,
+                share,
+            }),
+        }
+        open = true;
+    }
+    if let (true, Some(run)) = (open, runs.last_mut()) {
+        run.last = true;
+    }
+    runs
+}
+
+/// The best table under a dialect: it begins with the first run of its width, and a spoilt row
+/// within does not end it. Rows count by the share of their cells that are numbers, so that cells
+/// joined by a wrong separator lose.
+fn block(lines: &[&str], dialect: Dialect) -> Option<Block> {
+    let runs = runs(lines, dialect);
+    let mut best: Option<Block> = None;
+    for (k, run) in runs.iter().enumerate() {
+        let like = || runs[k..].iter().filter(|other| other.width == run.width);
+        let score = like().map(|run| run.share).sum();
+        let enough = run.rows >= LIKE_ROWS || run.last;
+        if enough && best.as_ref().is_none_or(|best| score > best.score) {
+            best = Some(Block {
+                dialect,
+                start: run.start,
+                width: run.width,
+                score,
+            });
+        }
+    }
+    best
+}
+
+/// The header above a block, and the units between.
+fn headed(
+    file: &str,
+    lines: &[&str],
+    block: &Block,
+    undecided: bool,
+) -> Result<Layout, RecordError> {
+    let above: Vec<(usize, Vec<Cow<'_, str>>)> = (0..block.start)
+        .rev()
+        .filter(|&k| !is_rule(lines[k]))
+        .take(2)
+        .filter_map(|k| {
+            let cells = split(lines[k], block.dialect.separator)?;
+            Some((k, fitted(cells, block.width)?))
+        })
+        .collect();
+    let (header, units) = match &above[..] {
+        [units, header] if are_units(&units.1) && !is_bracketed(&header.1) => (header, Some(units)),
+        [header, ..] => (header, None),
+        [] => {
+            return Err(RecordError::Text {
+                file: file.to_owned(),
+                fault: TextFault::NoHeader {
+                    line: block.start as u64 + 1,
+                    width: block.width,
+                },
+            });
+        }
+    };
+    let mut headings: Vec<Heading> = header.1.iter().map(|cell| heading(cell)).collect();
+    if let Some(first) = headings.first_mut() {
+        first.name = first.name.trim_start_matches(['#', '%']).trim().to_owned();
+    }
+    if let Some((_, units)) = units {
+        for (heading, unit) in headings.iter_mut().zip(units) {
+            heading.unit = without_brackets(unit).to_owned();
+        }
+    }
+    Ok(Layout {
+        dialect: block.dialect,
+        undecided,
+        header: header.0,
+        units: units.map(|(line, _)| *line),
+        first_row: block.start,
+        headings,
+    })
+}
+
+/// As many names as there are columns; a separator at the end of every row, or of the header
+/// alone, makes no column.
+fn fitted(mut cells: Vec<Cow<'_, str>>, width: usize) -> Option<Vec<Cow<'_, str>>> {
+    let ends_empty = cells.len() > 1 && cells.last().is_some_and(|cell| cell.is_empty());
+    if ends_empty {
+        cells.pop();
+    }
+    (cells.len() == width || cells.len() + 1 == width).then_some(cells)
+}
+
+/// A blank line or a line of dashes.
+fn is_rule(line: &str) -> bool {
+    line.chars().all(|c| {
+        matches!(
+            c,
+            '-' | '=' | '_' | '+' | '|' | ' ' | '\t' | '\r' | ';' | ','
+        )
+    })
+}
+
+fn is_bracketed(cells: &[Cow<'_, str>]) -> bool {
+    cells.iter().any(|cell| !heading(cell).unit.is_empty())
+}
+
+/// Whether a row holds units: at least half of what is written there is known, all of it short.
+fn are_units(cells: &[Cow<'_, str>]) -> bool {
+    const LONGEST: usize = 10;
+    let written = || {
+        let cells = cells.iter().map(|cell| without_brackets(cell));
+        cells.filter(|cell| !matches!(*cell, "" | "-"))
+    };
+    let known = written().filter(|cell| is_unit(cell)).count();
+    known > 0 && known * 2 >= written().count() && written().all(|c| c.chars().count() <= LONGEST)
+}
+
+/// Units of no motion or force that loggers write.
+fn is_unit(symbol: &str) -> bool {
+    const OTHERS: [&str; 24] = [
+        "V", "mV", "uV", "µV", "A", "mA", "W", "kW", "%", "°C", "degC", "K", "°F", "Hz", "kHz",
+        "Ohm", "1", "l/min", "kg", "kg/s", "J", "µm/m", "um/m", "mV/V",
+    ];
+    Unit::parse(symbol).kind() != UnitKind::Other || OTHERS.contains(&symbol)
+}
+
+fn without_brackets(cell: &str) -> &str {
+    let inner = |open, close| cell.strip_prefix(open)?.strip_suffix(close);
+    inner('[', ']')
+        .or_else(|| inner('(', ')'))
+        .unwrap_or(cell)
+        .trim()
+}
+
+/// `y [mm]`, and where the unit is known also `y (mm)`, `y / mm` and `y in mm`.
+pub(crate) fn heading(cell: &str) -> Heading {
+    let made = |name: &str, unit: &str| Heading {
+        name: name.trim().to_owned(),
+        unit: unit.trim().to_owned(),
+    };
+    let cell = cell.trim();
+    if let Some((name, unit)) = cell
+        .strip_suffix(']')
+        .and_then(|rest| rest.rsplit_once('['))
+        && !name.trim().is_empty()
+    {
+        return made(name, unit);
+    }
+    let round = cell
+        .strip_suffix(')')
+        .and_then(|rest| rest.rsplit_once('('));
+    let others = [round, cell.rsplit_once(" / "), cell.rsplit_once(" in ")];
+    for (name, unit) in others.into_iter().flatten() {
+        if !name.trim().is_empty() && is_unit(unit.trim()) {
+            return made(name, unit);
+        }
+    }
+    made(cell, "")
+}
+
+/// Whether a file begins with a header of the contract's own form: cells separated by commas, one
+/// at least with its unit in square brackets.
+pub(crate) fn starts_by_contract(head: &[u8]) -> bool {
+    let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+    let first = head
+        .split(|&byte| byte == b'\n')
+        .map(|line| line.trim_ascii())
+        .find(|line| !line.is_empty());
+    let Some(Ok(line)) = first.map(std::str::from_utf8) else {
+        return false;
+    };
+    if line.contains([';', '\t', '\r']) {
+        return false;
+    }
+    let cells = split(line, ',').unwrap_or_default();
+    let unit = |cell: &Cow<'_, str>| cell.ends_with(']') && !heading(cell).unit.is_empty();
+    cells.iter().any(unit)
+}

@@ -1,0 +1,13 @@
+//! Tables of text as loggers and spreadsheets write them.
+//!
+//! The layout is guessed from the first lines ([`layout`]), told in a note, and then held to: a row
+//! that does not fit is an error with its line.
+
+mod cells;
+mod layout;
+mod rows;
+mod stamp;
+mod text;
+
+pub(crate) use layout::starts_by_contract;
+pub(crate) use rows::read_table;
