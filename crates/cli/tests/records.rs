@@ -1,5 +1,5 @@
 //! Records of loggers and measurement programs, given to the commands.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
 
