@@ -15,27 +15,55 @@ use crate::structure::welch_options;
 const STRETCHES: usize = 20;
 /// Entries of a list below this share are left out.
 const SMALLEST_SHARE: f64 = 0.02;
+/// The square of a gap below this multiple of that of the noise floor is hidden by it.
+const HIDES: f64 = 1.5;
 /// Entries of a list at the most.
 const MOST_ENTRIES: usize = 6;
 
-/// Squared discrepancy over the variance of the measured channel, summed over the channels, for
-/// each sample of each run.
-pub(crate) fn energy(check: &Problem, prediction: &Prediction) -> Vec<Vec<f64>> {
-    let std = check.output_std();
-    prediction
-        .discrepancy
-        .iter()
-        .map(|run| {
-            let len = run.first().map_or(0, Vec::len);
-            let square = |i: usize| {
-                run.iter()
-                    .zip(&std)
-                    .map(|(signal, s)| (signal[i] / s).powi(2))
-                    .sum::<f64>()
-            };
-            (0..len).map(square).collect()
-        })
-        .collect()
+/// The gap of the nominal model that is to be shared out, and the noise in it.
+///
+/// Noise is everywhere alike, so it says nothing of where the gap lies: what is shared out is the
+/// square of the gap less that of the noise floor. Where the floor hides the gap, the square of all
+/// of it is.
+pub(crate) struct Located<'a> {
+    check: &'a Problem,
+    prediction: &'a Prediction,
+    /// Square of the noise floor of each channel, over the variance of the channel.
+    floor: Vec<f64>,
+    /// Whether the floor hides where the gap lies.
+    pub(crate) is_hidden: bool,
+}
+
+impl<'a> Located<'a> {
+    /// `floor` is the noise of each channel over its standard deviation.
+    pub(crate) fn new(check: &'a Problem, prediction: &'a Prediction, floor: &[f64]) -> Self {
+        let square = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+        let is_hidden = square(&prediction.nrmse) < HIDES * square(floor);
+        let floor = floor.iter().map(|f| if is_hidden { 0.0 } else { f * f });
+        Located {
+            check,
+            prediction,
+            floor: floor.collect(),
+            is_hidden,
+        }
+    }
+}
+
+/// Squared discrepancy over the variance of the measured channel less that of its noise, summed over
+/// the channels, for each sample of each run. A sum over samples that is negative is none.
+pub(crate) fn energy(located: &Located<'_>) -> Vec<Vec<f64>> {
+    let std = located.check.output_std();
+    let noise: f64 = located.floor.iter().sum();
+    let runs = located.prediction.discrepancy.iter();
+    runs.map(|run| {
+        let len = run.first().map_or(0, Vec::len);
+        let square = |i: usize| {
+            let each = run.iter().zip(&std);
+            each.map(|(signal, s)| (signal[i] / s).powi(2)).sum::<f64>() - noise
+        };
+        (0..len).map(square).collect()
+    })
+    .collect()
 }
 
 fn shares(values: &[f64]) -> Vec<f64> {
@@ -46,9 +74,11 @@ fn shares(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-pub(crate) fn channels(check: &Problem, prediction: &Prediction) -> Vec<ChannelShare> {
-    let squares: Vec<f64> = prediction.nrmse.iter().map(|e| e * e).collect();
-    let named = check.model.outputs.iter().zip(shares(&squares));
+pub(crate) fn channels(located: &Located<'_>) -> Vec<ChannelShare> {
+    let gaps = located.prediction.nrmse.iter().zip(&located.floor);
+    let squares: Vec<f64> = gaps.map(|(e, floor)| (e * e - floor).max(0.0)).collect();
+    let outputs = &located.check.model.outputs;
+    let named = outputs.iter().zip(shares(&squares));
     named
         .map(|(output, share)| ChannelShare {
             channel: output.channel.clone(),
@@ -57,12 +87,13 @@ pub(crate) fn channels(check: &Problem, prediction: &Prediction) -> Vec<ChannelS
         .collect()
 }
 
-pub(crate) fn records(check: &Problem, prediction: &Prediction) -> Vec<RecordShare> {
-    let sums: Vec<f64> = energy(check, prediction)
+pub(crate) fn records(located: &Located<'_>) -> Vec<RecordShare> {
+    let energy = energy(located);
+    let sums: Vec<f64> = energy
         .iter()
-        .map(|run| run.iter().sum())
+        .map(|run| run.iter().sum::<f64>().max(0.0))
         .collect();
-    let named = check.runs.iter().zip(shares(&sums));
+    let named = located.check.runs.iter().zip(shares(&sums));
     named
         .map(|(run, share)| RecordShare {
             record: run.name.clone(),
@@ -71,11 +102,9 @@ pub(crate) fn records(check: &Problem, prediction: &Prediction) -> Vec<RecordSha
         .collect()
 }
 
-pub(crate) fn times(check: &Problem, prediction: &Prediction) -> Vec<TimeShare> {
-    let energy = energy(check, prediction);
-    let total: f64 = energy.iter().flatten().sum();
+pub(crate) fn times(located: &Located<'_>) -> Vec<TimeShare> {
     let mut list = Vec::new();
-    for (run, energy) in check.runs.iter().zip(&energy) {
+    for (run, energy) in located.check.runs.iter().zip(&energy(located)) {
         let len = energy.len().div_ceil(STRETCHES).max(1);
         for (k, stretch) in energy.chunks(len).enumerate() {
             let from = k * len;
@@ -83,13 +112,17 @@ pub(crate) fn times(check: &Problem, prediction: &Prediction) -> Vec<TimeShare> 
                 record: run.name.clone(),
                 from_s: run.start_s + from as f64 * run.time_step_s,
                 to_s: run.start_s + (from + stretch.len()) as f64 * run.time_step_s,
-                share: if total > 0.0 {
-                    stretch.iter().sum::<f64>() / total
-                } else {
-                    0.0
-                },
+                share: stretch.iter().sum::<f64>().max(0.0),
             });
         }
+    }
+    let total: f64 = list.iter().map(|entry| entry.share).sum();
+    for entry in &mut list {
+        entry.share = if total > 0.0 {
+            entry.share / total
+        } else {
+            0.0
+        };
     }
     trim(&mut list, |entry| entry.share);
     list
@@ -105,16 +138,16 @@ fn trim<T>(list: &mut Vec<T>, share: impl Fn(&T) -> f64) {
 }
 
 /// Bands of the longest check record: the constant part, and the peaks of the spectrum of the rest.
-pub(crate) fn bands(check: &Problem, prediction: &Prediction) -> Vec<BandShare> {
-    bands_marked(check, prediction, |run| marks(check, run))
+pub(crate) fn bands(located: &Located<'_>) -> Vec<BandShare> {
+    bands_marked(located, |run| marks(located.check, run))
 }
 
 /// As [`bands`], named by the marks of the record that is looked at.
 pub(crate) fn bands_marked(
-    check: &Problem,
-    prediction: &Prediction,
+    located: &Located<'_>,
     marks: impl Fn(usize) -> Marks,
 ) -> Vec<BandShare> {
+    let (check, prediction) = (located.check, located.prediction);
     let std = check.output_std();
     let Some(run) = (0..check.runs.len()).max_by_key(|&r| check.runs[r].len) else {
         return vec![];
@@ -135,6 +168,9 @@ pub(crate) fn bands_marked(
             .for_each(|(sum, d)| *sum += d / (s * s));
         freq_hz = psd.freq_hz;
     }
+    // White noise is as strong at every frequency.
+    let noise = located.floor.iter().sum::<f64>() * 2.0 / fs;
+    density.iter_mut().for_each(|d| *d = (*d - noise).max(0.0));
     let marks = marks(run);
     let total: f64 = density.iter().sum();
     if total <= 0.0 {
@@ -275,11 +311,11 @@ fn label(marks: &Marks, freq_hz: f64, half_bin: f64) -> String {
 
 /// Regions of motion where the discrepancy gathers, over the nominal motion across each place.
 pub(crate) fn states(
-    check: &Problem,
-    prediction: &Prediction,
+    located: &Located<'_>,
     places: &[Location],
 ) -> Result<Vec<StateShare>, EstimateError> {
-    let energy = energy(check, prediction);
+    let (check, prediction) = (located.check, located.prediction);
+    let energy = energy(located);
     let simulator = check.simulator(&[], 0)?;
     let mut list = Vec::new();
     for place in places {
@@ -364,7 +400,7 @@ pub(crate) fn regions(
                 at: at.to_string(),
                 from,
                 to,
-                share: hit / total,
+                share: (hit.max(0.0) / total).min(1.0),
                 occupancy: count as f64 / values.len().max(1) as f64,
             }
         })

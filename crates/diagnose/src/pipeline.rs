@@ -11,6 +11,7 @@ use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
+use crate::locate::Located;
 use crate::remainder::{Remainder, remainder};
 use crate::search::{Hypothesis, Search, name};
 use crate::verdict::{Judged, judge, prune, simplest};
@@ -157,14 +158,22 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         answer::candidates(&short, &answer, &verdict, &plain)?
     };
     let places = locate_places(request.model);
+    let floors: Vec<f64> = gap.channels.iter().map(|c| c.noise_floor).collect();
+    let located = Located::new(&check, &predictions[0], &floors);
     let r#where = Where {
-        channels: locate::channels(&check, &predictions[0]),
+        channels: locate::channels(&located),
         locations: answer::locations(&answer, left_unknown),
-        bands: locate::bands(&check, &predictions[0]),
-        times: locate::times(&check, &predictions[0]),
-        states: locate::states(&check, &predictions[0], &places)?,
-        records: locate::records(&check, &predictions[0]),
+        bands: locate::bands(&located),
+        times: locate::times(&located),
+        states: locate::states(&located, &places)?,
+        records: locate::records(&located),
     };
+    let mut notes = notes(request, &data);
+    if located.is_hidden {
+        notes.push(
+            "the gap hardly stands out of the noise: where it lies is where the noise is".into(),
+        );
+    }
     Ok(Outcome {
         diagnosis: Diagnosis {
             schema: "simgap-diagnosis/1",
@@ -175,7 +184,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
             verdict,
             remainder: answer.remainder.told(),
             candidates,
-            notes: notes(request, &data),
+            notes,
         },
         corrected: corrected_model(request.model, &placed),
         series: series(&check, &data, &predictions[0], &predictions[shown]),

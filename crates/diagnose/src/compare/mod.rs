@@ -31,7 +31,7 @@ pub use error::CompareError;
 
 use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Status, Where};
 use crate::gap::Prediction;
-use crate::locate::{self, Marks};
+use crate::locate::{self, Located, Marks};
 use crate::{DiagnoseError, Progress, Request, diagnose};
 use agreement::agreement;
 use pair::{Pairing, pair, predicted_name};
@@ -205,22 +205,25 @@ fn found(pairing: &Pairing, problem: &Problem, diagnosis: &Diagnosis) -> Where {
         Some(line) => Some((line, "the excitation")),
         None => moved().map(|line| (line, "the main line of the motion")),
     };
-    let energy = locate::energy(problem, &prediction).concat();
+    let channels = diagnosis.gap.channels.iter();
+    let floors: Vec<f64> = channels.map(|c| c.noise_floor).collect();
+    let located = Located::new(problem, &prediction, &floors);
+    let energy = locate::energy(&located).concat();
     let states = pairing.traces.iter().flat_map(|trace| {
         let motion = motion::motion(trace, step);
         motion::states(trace, motion.as_ref(), &energy)
     });
     Where {
-        channels: locate::channels(problem, &prediction),
+        channels: locate::channels(&located),
         locations: diagnosis.r#where.locations.clone(),
-        bands: locate::bands_marked(problem, &prediction, |_| Marks {
+        bands: locate::bands_marked(&located, |_| Marks {
             main,
             natural_hz: vec![],
             sample_rate_hz: rate,
         }),
-        times: locate::times(problem, &prediction),
+        times: locate::times(&located),
         states: locate::ranked(states.collect()),
-        records: locate::records(problem, &prediction),
+        records: locate::records(&located),
     }
 }
 
