@@ -20,6 +20,8 @@
 //! # Ok::<(), simgap_record::RecordError>(())
 //! ```
 
+mod arrays;
+mod bytes;
 mod channel;
 mod csv_header;
 mod csv_read;
@@ -28,14 +30,18 @@ mod faults;
 mod format;
 mod logger;
 mod map;
+mod mat5;
 mod mend;
 mod note;
 mod open;
 mod quality;
+mod raw;
 mod record;
 mod resample;
 mod select;
+mod tdms;
 mod time_base;
+mod uff;
 mod unit;
 mod write;
 

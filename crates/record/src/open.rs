@@ -10,7 +10,9 @@ use crate::error::RecordError;
 use crate::faults::FormatFault;
 use crate::format::Format;
 use crate::logger::{self, starts_by_contract};
+use crate::raw::assemble;
 use crate::select::{Mend, ReadOptions, Reading};
+use crate::{arrays, mat5, tdms, uff};
 
 /// No file but a CSV of the contract's own form is read that is longer: such a file is held in
 /// memory whole.
@@ -114,9 +116,24 @@ fn read_bytes(
     };
     match format {
         Format::Text => logger::read_table(label, name, bytes, options, mend),
+        Format::Mat5 | Format::Uff | Format::Tdms => {
+            let mut notes = Vec::new();
+            let raw = match format {
+                Format::Mat5 => mat5::read(bytes).map(|arrays| arrays::to_raw(arrays, &mut notes)),
+                Format::Uff => uff::read(bytes, &mut notes),
+                _ => tdms::read(bytes, &mut notes),
+            };
+            let raw = raw.map_err(|fault| RecordError::Format {
+                file: label.to_owned(),
+                format,
+                fault,
+            })?;
+            assemble(label, name, raw, options, mend, notes)
+        }
         Format::Zip => unread("save the table as CSV"),
         Format::Gzip => unread("unpack it first"),
-        _ => unread("save it as CSV, MAT (version 5 or 7) or UFF"),
+        Format::Hdf5 => unread("save it with -v7 in MATLAB, or as CSV"),
+        Format::Parquet | Format::Mdf => unread("save it as CSV, MAT (-v7), UFF or TDMS"),
     }
 }
 

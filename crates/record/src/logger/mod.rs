@@ -9,5 +9,5 @@ mod rows;
 mod stamp;
 mod text;
 
-pub(crate) use layout::starts_by_contract;
+pub(crate) use layout::{heading, starts_by_contract};
 pub(crate) use rows::read_table;

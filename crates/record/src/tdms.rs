@@ -1,0 +1,416 @@
+//! NI TDMS (National Instruments, "TDMS File Format Internal Structure"), without DAQmx raw data.
+//!
+//! A file is a row of segments. Each begins with 28 bytes (tag, contents, version, length, length of
+//! the description), then comes the description of its channels, then their values, in turn or
+//! interleaved, repeated as often as they fit. What a description leaves out is as in the segment
+//! before.
+
+use std::collections::HashMap;
+
+use crate::bytes::{Bytes, Stored};
+use crate::faults::FormatFault;
+use crate::note::Note;
+use crate::raw::{Raw, RawColumn, Uniform, within_limit};
+
+/// Channels that are read from one file.
+const MOST_CHANNELS: usize = 10_000;
+/// Bits of the contents of a segment.
+const HAS_DESCRIPTION: u32 = 1 << 1;
+const NEW_LIST: u32 = 1 << 2;
+const HAS_VALUES: u32 = 1 << 3;
+const INTERLEAVED: u32 = 1 << 5;
+const BIG_ENDIAN: u32 = 1 << 6;
+const DAQMX: u32 = 1 << 7;
+/// Length of a segment that was never finished.
+const UNFINISHED: u64 = u64::MAX;
+/// Type codes of text and of a stamp.
+const TEXT: u32 = 0x20;
+const STAMP: u32 = 0x44;
+/// 2^64: stamps count seconds in as many parts.
+const PARTS: f64 = 18_446_744_073_709_551_616.0;
+
+/// What the values of a channel are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Number(Stored),
+    Stamp,
+    /// Of this size each, and not read.
+    Other(u64),
+}
+
+impl Kind {
+    fn of(code: u32) -> Option<Kind> {
+        Some(match code {
+            1 => Kind::Number(Stored::I8),
+            2 => Kind::Number(Stored::I16),
+            3 => Kind::Number(Stored::I32),
+            4 => Kind::Number(Stored::I64),
+            5 => Kind::Number(Stored::U8),
+            6 => Kind::Number(Stored::U16),
+            7 => Kind::Number(Stored::U32),
+            8 => Kind::Number(Stored::U64),
+            9 | 0x19 => Kind::Number(Stored::F32),
+            10 | 0x1a => Kind::Number(Stored::F64),
+            0x21 => Kind::Number(Stored::U8),
+            STAMP => Kind::Stamp,
+            0x08_000c => Kind::Other(8),
+            0x10_000d => Kind::Other(16),
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> u64 {
+        match self {
+            Kind::Number(stored) => stored.size() as u64,
+            Kind::Stamp => 16,
+            Kind::Other(size) => size,
+        }
+    }
+}
+
+/// Values of one channel in each round of a segment.
+#[derive(Debug, Clone, Copy)]
+struct Share {
+    channel: usize,
+    kind: Kind,
+    /// Values.
+    count: u64,
+    /// All of them, bytes.
+    bytes: u64,
+}
+
+#[derive(Debug, Default)]
+struct Channel {
+    path: String,
+    unit: String,
+    step_s: Option<f64>,
+    offset_s: f64,
+    scaled: bool,
+    unread: bool,
+    values: Vec<f64>,
+    /// Seconds of the first stamp.
+    epoch: Option<i64>,
+    last: Option<Share>,
+}
+
+/// Reads all channels of numbers and stamps.
+pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
+    let mut file = File::default();
+    let mut rest = Bytes::new(bytes, 0, false);
+    while rest.left() > 0 {
+        file.segment(&mut rest)?;
+    }
+    Ok(file.raw(notes))
+}
+
+#[derive(Default)]
+struct File {
+    channels: Vec<Channel>,
+    by_path: HashMap<String, usize>,
+    /// What a round of values consists of.
+    round: Vec<Share>,
+    /// Numbers so far.
+    values: u64,
+}
+
+impl File {
+    fn segment(&mut self, rest: &mut Bytes<'_>) -> Result<(), FormatFault> {
+        const WHAT: &str = "the head of a segment";
+        let at = rest.place();
+        let tag = rest.take(4, WHAT)?;
+        if tag != b"TDSm" {
+            return Err(FormatFault::Malformed {
+                at,
+                found: format!("{tag:02x?}"),
+                needed: "a segment, which begins with TDSm (TDSh begins an index file; read the .tdms beside it)",
+            });
+        }
+        let contents = rest.u32(WHAT)?;
+        rest.take(4, WHAT)?;
+        let (length, described) = (rest.u64(WHAT)?, rest.u64(WHAT)?);
+        let length = if length == UNFINISHED {
+            rest.left() as u64
+        } else {
+            length
+        };
+        let mut body = rest
+            .part(length, "a segment")?
+            .ordered(contents & BIG_ENDIAN != 0);
+        let mut description = body.part(described, "the description of a segment")?;
+        if contents & NEW_LIST != 0 {
+            self.round.clear();
+        }
+        if contents & HAS_DESCRIPTION != 0 {
+            self.describe(&mut description)?;
+        }
+        if contents & HAS_VALUES == 0 {
+            return Ok(());
+        }
+        if contents & DAQMX != 0 {
+            return Err(FormatFault::Unsupported {
+                found: "raw data of DAQmx".to_owned(),
+                instead: "export the record as CSV, or as TDMS with scaled values",
+            });
+        }
+        self.values(&mut body, contents & INTERLEAVED != 0)
+    }
+
+    fn describe(&mut self, bytes: &mut Bytes<'_>) -> Result<(), FormatFault> {
+        const WHAT: &str = "the description of a channel";
+        let count = bytes.u32(WHAT)?;
+        for _ in 0..count {
+            let path = text(bytes)?;
+            let channel = self.channel(&path)?;
+            let at = bytes.place();
+            match bytes.u32(WHAT)? {
+                u32::MAX => self.round.retain(|share| share.channel != channel),
+                0 => {
+                    if let Some(share) = self.channels[channel].last {
+                        self.set(share);
+                    }
+                }
+                0x1269 | 0x1369 | 0x6912_0000 | 0x6913_0000 => {
+                    return Err(FormatFault::Unsupported {
+                        found: "raw data of DAQmx".to_owned(),
+                        instead: "export the record as CSV, or as TDMS with scaled values",
+                    });
+                }
+                _ => {
+                    let code = bytes.u32(WHAT)?;
+                    bytes.u32(WHAT)?;
+                    let count = bytes.u64(WHAT)?;
+                    let (kind, size) = if code == TEXT {
+                        (Kind::Other(0), bytes.u64(WHAT)?)
+                    } else {
+                        let kind = Kind::of(code).ok_or_else(|| FormatFault::Malformed {
+                            at,
+                            found: format!("values of type {code:#x}"),
+                            needed: "a type of the format",
+                        })?;
+                        (kind, count.saturating_mul(kind.size()))
+                    };
+                    self.set(Share {
+                        channel,
+                        kind,
+                        count,
+                        bytes: size,
+                    });
+                }
+            }
+            self.properties(bytes, channel)?;
+        }
+        // What takes no bytes takes no part, so that every round moves on.
+        self.round.retain(|share| share.bytes > 0);
+        Ok(())
+    }
+
+    fn channel(&mut self, path: &str) -> Result<usize, FormatFault> {
+        if let Some(&channel) = self.by_path.get(path) {
+            return Ok(channel);
+        }
+        if self.channels.len() == MOST_CHANNELS {
+            return Err(FormatFault::TooMuch {
+                most: MOST_CHANNELS as u64,
+                what: "channels",
+            });
+        }
+        self.channels.push(Channel {
+            path: path.to_owned(),
+            ..Channel::default()
+        });
+        self.by_path
+            .insert(path.to_owned(), self.channels.len() - 1);
+        Ok(self.channels.len() - 1)
+    }
+
+    fn set(&mut self, share: Share) {
+        self.channels[share.channel].last = Some(share);
+        match self
+            .round
+            .iter_mut()
+            .find(|old| old.channel == share.channel)
+        {
+            Some(old) => *old = share,
+            None => self.round.push(share),
+        }
+    }
+
+    fn properties(&mut self, bytes: &mut Bytes<'_>, channel: usize) -> Result<(), FormatFault> {
+        const WHAT: &str = "the properties of a channel";
+        let count = bytes.u32(WHAT)?;
+        for _ in 0..count {
+            let name = text(bytes)?;
+            let at = bytes.place();
+            let code = bytes.u32(WHAT)?;
+            let channel = &mut self.channels[channel];
+            if code == TEXT {
+                let value = text(bytes)?;
+                if name == "unit_string" {
+                    channel.unit = value;
+                }
+                continue;
+            }
+            let kind = Kind::of(code).ok_or_else(|| FormatFault::Malformed {
+                at,
+                found: format!("a property of type {code:#x}"),
+                needed: "a type of the format",
+            })?;
+            let raw = bytes.take(kind.size(), WHAT)?;
+            let Kind::Number(stored) = kind else { continue };
+            let value = stored.number(raw, bytes.big_endian());
+            match name.as_str() {
+                "wf_increment" if value > 0.0 => channel.step_s = Some(value),
+                "wf_start_offset" => channel.offset_s = value,
+                "NI_Number_Of_Scales" => channel.scaled = value > 0.0,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn values(&mut self, body: &mut Bytes<'_>, interleaved: bool) -> Result<(), FormatFault> {
+        let round = self
+            .round
+            .iter()
+            .fold(0_u64, |sum, share| sum.saturating_add(share.bytes));
+        if round == 0 {
+            return Ok(());
+        }
+        if interleaved {
+            return self.interleaved(body);
+        }
+        // A round that was cut off holds whole values of its first channels, which would make
+        // channels of different lengths: it is not read.
+        while body.left() as u64 >= round {
+            for k in 0..self.round.len() {
+                let share = self.round[k];
+                let bytes = body.take(share.bytes, "the values of a channel")?;
+                self.values = self.values.saturating_add(share.count);
+                within_limit(self.values)?;
+                self.channels[share.channel].push(share.kind, bytes, body.big_endian());
+            }
+        }
+        Ok(())
+    }
+
+    fn interleaved(&mut self, body: &mut Bytes<'_>) -> Result<(), FormatFault> {
+        let width = self
+            .round
+            .iter()
+            .map(|share| share.kind.size())
+            .sum::<u64>();
+        if self.round.iter().any(|share| share.kind.size() == 0) {
+            return Err(FormatFault::Unsupported {
+                found: "interleaved text".to_owned(),
+                instead: "export the record as CSV",
+            });
+        }
+        let mut rows = self.round.first().map_or(0, |share| share.count);
+        rows = rows.max(body.left() as u64 / width);
+        while rows > 0 && body.left() as u64 >= width {
+            for k in 0..self.round.len() {
+                let share = self.round[k];
+                let bytes = body.take(share.kind.size(), "the values of a channel")?;
+                self.values += 1;
+                within_limit(self.values)?;
+                self.channels[share.channel].push(share.kind, bytes, body.big_endian());
+            }
+            rows -= 1;
+        }
+        Ok(())
+    }
+
+    fn raw(self, notes: &mut Vec<Note>) -> Raw {
+        let mut raw = Raw::default();
+        let mut names: HashMap<String, usize> = HashMap::new();
+        for channel in &self.channels {
+            *names.entry(last_name(&channel.path)).or_default() += 1;
+        }
+        for channel in self.channels {
+            let short = last_name(&channel.path);
+            let name = match names.get(&short) {
+                Some(1) => short,
+                _ => channel
+                    .path
+                    .replace('\'', "")
+                    .trim_start_matches('/')
+                    .to_owned(),
+            };
+            let mut left_out = |because: &str| {
+                notes.push(Note::LeftOut {
+                    column: name.clone(),
+                    because: because.to_owned(),
+                });
+            };
+            if channel.scaled {
+                left_out("its values are to be scaled by the program that wrote them");
+            } else if channel.unread {
+                left_out("its values are no real numbers");
+            } else if channel.values.is_empty() {
+                continue;
+            } else {
+                if let (Some(step_s), None) = (channel.step_s, raw.uniform) {
+                    raw.uniform = Some(Uniform {
+                        start_s: channel.offset_s,
+                        step_s,
+                        rows: channel.values.len(),
+                    });
+                }
+                if let (Some(step_s), Some(uniform)) = (channel.step_s, raw.uniform)
+                    && step_s != uniform.step_s
+                {
+                    left_out("its step is not that of the first channel");
+                    continue;
+                }
+                raw.columns.push(RawColumn {
+                    name,
+                    unit: channel.unit,
+                    values: channel.values,
+                });
+            }
+        }
+        raw
+    }
+}
+
+impl Channel {
+    fn push(&mut self, kind: Kind, bytes: &[u8], big_endian: bool) {
+        match kind {
+            Kind::Number(stored) => self.values.extend(stored.numbers(bytes, big_endian)),
+            Kind::Other(_) => self.unread = true,
+            Kind::Stamp => {
+                self.unit = "s".to_owned();
+                for stamp in bytes.chunks_exact(16) {
+                    let (parts, seconds) = stamp_of(stamp, big_endian);
+                    let epoch = *self.epoch.get_or_insert(seconds);
+                    let whole = seconds.wrapping_sub(epoch) as f64;
+                    self.values.push(whole + parts as f64 / PARTS);
+                }
+            }
+        }
+    }
+}
+
+/// Parts of a second and seconds since 1904; the other way round in big-endian files.
+fn stamp_of(stamp: &[u8], big_endian: bool) -> (u64, i64) {
+    let mut halves = [[0; 8]; 2];
+    halves[0].copy_from_slice(&stamp[..8]);
+    halves[1].copy_from_slice(&stamp[8..16]);
+    if big_endian {
+        (u64::from_be_bytes(halves[1]), i64::from_be_bytes(halves[0]))
+    } else {
+        (u64::from_le_bytes(halves[0]), i64::from_le_bytes(halves[1]))
+    }
+}
+
+fn text(bytes: &mut Bytes<'_>) -> Result<String, FormatFault> {
+    let length = bytes.u32("a name")?;
+    let text = bytes.take(u64::from(length), "a name")?;
+    Ok(String::from_utf8_lossy(text).into_owned())
+}
+
+/// `Kraft` of `/'Log'/'Kraft'`.
+fn last_name(path: &str) -> String {
+    let last = path.rsplit_once("/'").map_or(path, |(_, last)| last);
+    last.trim_end_matches('\'').replace("''", "'")
+}

@@ -1,0 +1,458 @@
+//! Universal files, dataset 58 (functions at nodes), as text and as binary 58b (UC SDRL).
+//!
+//! A dataset stands between two lines that hold -1 alone and begins with its number. Dataset 58 has
+//! eleven lines of description, then values: pairs of abscissa and ordinate where the spacing is
+//! uneven, ordinates alone where it is even. In 58b the values are bytes, whose number stands in
+//! the first line. Only real functions of time are read.
+
+use crate::bytes::Stored;
+use crate::faults::FormatFault;
+use crate::note::Note;
+use crate::raw::{Raw, RawColumn, Uniform, within_limit};
+use crate::{Place, Unit, UnitKind};
+
+/// Lines that describe a function.
+const DESCRIPTION: usize = 11;
+/// Functions that are read from one file.
+const MOST_FUNCTIONS: usize = 4096;
+/// Code of time as abscissa.
+const TIME: u32 = 17;
+/// Time bases are one if they differ by less than this share: they have six digits.
+const SAME: f64 = 1e-5;
+
+/// Reads all functions of time on the time base of the first one.
+pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
+    let mut lines = Lines {
+        bytes,
+        at: 0,
+        line: 0,
+        values: 0,
+    };
+    let mut raw = Raw::default();
+    let mut base = None;
+    while let Some(start) = lines.next() {
+        if start.trim() != "-1" {
+            continue;
+        }
+        let Some(number) = lines.next() else { break };
+        if !matches!(number.trim_start().as_bytes(), [b'5', b'8', ..]) {
+            lines.skip_dataset();
+            continue;
+        }
+        let Some(function) = function(&mut lines, &number, notes)? else {
+            continue;
+        };
+        if raw.columns.len() >= MOST_FUNCTIONS {
+            return Err(FormatFault::TooMuch {
+                most: MOST_FUNCTIONS as u64,
+                what: "functions",
+            });
+        }
+        keep(function, &mut raw, &mut base, notes);
+    }
+    if base.is_none() {
+        return Err(FormatFault::Unsupported {
+            found: "no real function of time".to_owned(),
+            instead: "export time records as dataset 58",
+        });
+    }
+    Ok(raw)
+}
+
+/// A function of time.
+struct Function {
+    name: String,
+    unit: String,
+    base: Base,
+    values: Vec<f64>,
+}
+
+/// The time base of a function.
+#[derive(PartialEq)]
+enum Base {
+    Even(Uniform),
+    Stamps(Vec<f64>),
+}
+
+impl Base {
+    fn is_like(&self, other: &Base) -> bool {
+        match (self, other) {
+            (Base::Even(a), Base::Even(b)) => {
+                let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+                a.rows == b.rows && near(a.step_s, b.step_s) && near(a.start_s, b.start_s)
+            }
+            _ => self == other,
+        }
+    }
+}
+
+fn keep(function: Function, raw: &mut Raw, base: &mut Option<Base>, notes: &mut Vec<Note>) {
+    let Function {
+        mut name,
+        unit,
+        base: own,
+        values,
+    } = function;
+    let taken = |raw: &Raw, name: &str| raw.columns.iter().any(|column| column.name == name);
+    let mut count = 2;
+    let plain = name.clone();
+    while taken(raw, &name) {
+        name = format!("{plain} ({count})");
+        count += 1;
+    }
+    match base {
+        None => {
+            match &own {
+                Base::Even(uniform) => raw.uniform = Some(*uniform),
+                Base::Stamps(stamps) => raw.columns.push(RawColumn {
+                    name: "t".to_owned(),
+                    unit: "s".to_owned(),
+                    values: stamps.clone(),
+                }),
+            }
+            *base = Some(own);
+        }
+        Some(base) if base.is_like(&own) => {}
+        Some(_) => {
+            notes.push(Note::LeftOut {
+                column: name,
+                because: "its time base is not that of the first function".to_owned(),
+            });
+            return;
+        }
+    }
+    raw.columns.push(RawColumn { name, unit, values });
+}
+
+/// What the lines of description say.
+struct Description {
+    name: String,
+    unit: String,
+    stored: Stored,
+    count: u64,
+    even: bool,
+    /// Seconds per unit of the abscissa.
+    in_seconds: f64,
+    start: f64,
+    step: f64,
+}
+
+/// Reads a dataset 58 up to its end; `None` for what is no real function of time.
+fn function(
+    lines: &mut Lines<'_>,
+    number: &str,
+    notes: &mut Vec<Note>,
+) -> Result<Option<Function>, FormatFault> {
+    let binary = Binary::of(number, lines)?;
+    let first_line = lines.line + 1;
+    let mut text = Vec::with_capacity(DESCRIPTION);
+    for _ in 0..DESCRIPTION {
+        text.push(
+            lines
+                .next()
+                .ok_or_else(|| lines.cut_off("a description of eleven lines", 1, 0))?,
+        );
+    }
+    let described = Description::of(&text, first_line)?;
+    let values = match &binary {
+        Some(binary) => Err(lines.bytes(binary.length)?),
+        None => Ok(lines.numbers()?),
+    };
+    if binary.is_some() {
+        lines.skip_dataset();
+    }
+    let described = match described {
+        Ok(described) => described,
+        Err((column, because)) => {
+            notes.push(Note::LeftOut { column, because });
+            return Ok(None);
+        }
+    };
+    let Description {
+        stored,
+        count,
+        even,
+        ..
+    } = described;
+    let values = match (values, &binary) {
+        (Ok(values), _) => values,
+        (Err(bytes), Some(binary)) => binary.numbers(bytes, stored, count, even),
+        (Err(_), None) => vec![],
+    };
+    let needed = if even { count } else { count.saturating_mul(2) };
+    if (values.len() as u64) < needed {
+        return Err(lines.cut_off("values of a function", needed, values.len() as u64));
+    }
+    // Not more than there are values.
+    let count = count as usize;
+    let (base, values) = if even {
+        let base = Uniform {
+            start_s: described.start,
+            step_s: described.step,
+            rows: count,
+        };
+        (Base::Even(base), values[..count].to_vec())
+    } else {
+        let pairs = || values.chunks_exact(2).take(count);
+        let stamps = pairs().map(|pair| pair[0] * described.in_seconds).collect();
+        (Base::Stamps(stamps), pairs().map(|pair| pair[1]).collect())
+    };
+    let Description { name, unit, .. } = described;
+    Ok(Some(Function {
+        name,
+        unit,
+        base,
+        values,
+    }))
+}
+
+impl Description {
+    /// Reads the eleven lines; the inner error says why a sound function is left out.
+    fn of(
+        text: &[String],
+        first_line: u64,
+    ) -> Result<Result<Description, (String, String)>, FormatFault> {
+        let at = |k: usize| Place::Line(first_line + k as u64);
+        let fault = |k: usize, needed| FormatFault::Malformed {
+            at: at(k),
+            found: format!("'{}'", crate::error::shortened(text[k].trim())),
+            needed,
+        };
+        let words = |k: usize| text[k].split_whitespace().collect::<Vec<_>>();
+        let kind: u32 = word(&words(5), 0).ok_or_else(|| fault(5, "the type of a function"))?;
+        let form = words(6);
+        let shape = "data type, number of values, spacing, start and step";
+        let real: u32 = word(&form, 0).ok_or_else(|| fault(6, shape))?;
+        let count: u64 = word(&form, 1).ok_or_else(|| fault(6, shape))?;
+        let spacing: u32 = word(&form, 2).ok_or_else(|| fault(6, shape))?;
+        let number = |k: usize| form.get(k).and_then(|word| fortran(word));
+        let (start, step) = (number(3), number(4));
+        let abscissa: u32 = word(&words(7), 0).unwrap_or(0);
+        let name = name_of(text);
+        let left_out = |because: &str| Ok(Err((name.clone(), because.to_owned())));
+        if abscissa != TIME && !(abscissa == 0 && kind == 1) {
+            return left_out("it is no function of time");
+        }
+        let stored = match real {
+            2 => Stored::F32,
+            4 => Stored::F64,
+            _ => return left_out("its values are complex"),
+        };
+        let (Some(start), Some(step)) = (start, step) else {
+            return Err(fault(6, shape));
+        };
+        let unit = Unit::parse(&unit_of(&text[7]));
+        let in_seconds = if unit.kind() == UnitKind::Time {
+            unit.si_factor()
+        } else {
+            1.0
+        };
+        Ok(Ok(Description {
+            unit: unit_of(&text[8]),
+            name,
+            stored,
+            count,
+            even: spacing != 0,
+            in_seconds,
+            start: start * in_seconds,
+            step: step * in_seconds,
+        }))
+    }
+}
+
+fn word<T: std::str::FromStr>(words: &[&str], index: usize) -> Option<T> {
+    words.get(index)?.parse().ok()
+}
+
+/// The first line, or node and direction of the response where it is empty.
+fn name_of(text: &[String]) -> String {
+    let first = text[0].trim();
+    if !first.is_empty() && !first.eq_ignore_ascii_case("NONE") {
+        return first.to_owned();
+    }
+    // Response entity, node and direction stand in columns 31 to 55 of the sixth line.
+    let response: String = text[5].chars().skip(30).take(25).collect();
+    let words: Vec<&str> = response.split_whitespace().collect();
+    match words[..] {
+        [.., node, direction] => format!("{node}:{direction}"),
+        _ => "function".to_owned(),
+    }
+}
+
+/// The label of the units: the last 20 of the characters after four numbers and a first label.
+fn unit_of(line: &str) -> String {
+    let label: String = line.chars().skip(46).take(21).collect();
+    let label = label.trim();
+    if label.eq_ignore_ascii_case("NONE") {
+        return String::new();
+    }
+    label.to_owned()
+}
+
+/// How the values of a dataset 58b are stored.
+struct Binary {
+    big_endian: bool,
+    length: u64,
+}
+
+impl Binary {
+    /// `58b`, order of bytes, format of numbers, lines of description, bytes.
+    fn of(number: &str, lines: &Lines<'_>) -> Result<Option<Binary>, FormatFault> {
+        let Some(rest) = number.trim_start().strip_prefix("58b") else {
+            return Ok(None);
+        };
+        let words: Vec<&str> = rest.split_whitespace().collect();
+        let fault = || FormatFault::Malformed {
+            at: Place::Line(lines.line),
+            found: format!("'{}'", crate::error::shortened(number.trim())),
+            needed: "58b, order of bytes, format of numbers, 11 lines, number of bytes",
+        };
+        let order: u32 = word(&words, 0).ok_or_else(fault)?;
+        let format: u32 = word(&words, 1).ok_or_else(fault)?;
+        let length: u64 = word(&words, 3).ok_or_else(fault)?;
+        if format != 2 {
+            return Err(FormatFault::Unsupported {
+                found: format!("floating-point format {format}"),
+                instead: "export with IEEE 754 numbers",
+            });
+        }
+        Ok(Some(Binary {
+            big_endian: order == 2,
+            length,
+        }))
+    }
+
+    /// The values; an uneven function of double precision has abscissas of single precision,
+    /// unless there are bytes for double precision.
+    fn numbers(&self, bytes: &[u8], stored: Stored, count: u64, even: bool) -> Vec<f64> {
+        if even || stored == Stored::F32 {
+            return stored.numbers(bytes, self.big_endian);
+        }
+        let doubles = bytes.len() as u64 == count.saturating_mul(16);
+        if doubles {
+            return stored.numbers(bytes, self.big_endian);
+        }
+        bytes
+            .chunks_exact(12)
+            .flat_map(|pair| {
+                let (abscissa, ordinate) = pair.split_at(4);
+                [
+                    Stored::F32.number(abscissa, self.big_endian),
+                    Stored::F64.number(ordinate, self.big_endian),
+                ]
+            })
+            .collect()
+    }
+}
+
+/// Lines of a file that may hold bytes of any kind between them.
+struct Lines<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    /// Number of the line that was taken last.
+    line: u64,
+    /// Numbers of text so far.
+    values: u64,
+}
+
+impl<'a> Lines<'a> {
+    fn next(&mut self) -> Option<String> {
+        let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
+        let end = rest.iter().position(|&byte| byte == b'\n');
+        let line = &rest[..end.unwrap_or(rest.len())];
+        self.at += end.map_or(rest.len(), |end| end + 1);
+        self.line += 1;
+        // A line of text is short; what is not, is none.
+        const LONGEST: usize = 1000;
+        let line = &line[..line.len().min(LONGEST)];
+        Some(
+            String::from_utf8_lossy(line)
+                .trim_end_matches('\r')
+                .to_owned(),
+        )
+    }
+
+    fn cut_off(&self, what: &'static str, needed: u64, left: u64) -> FormatFault {
+        FormatFault::Truncated {
+            at: Place::Line(self.line),
+            what,
+            needed,
+            left,
+        }
+    }
+
+    /// Passes over lines up to one that ends a dataset.
+    fn skip_dataset(&mut self) {
+        while let Some(line) = self.next() {
+            if line.trim() == "-1" {
+                return;
+            }
+        }
+    }
+
+    fn bytes(&mut self, count: u64) -> Result<&'a [u8], FormatFault> {
+        let left = self.bytes.len() - self.at;
+        match usize::try_from(count) {
+            Ok(count) if count <= left => {
+                let taken = &self.bytes[self.at..self.at + count];
+                self.at += count;
+                Ok(taken)
+            }
+            _ => Err(FormatFault::Truncated {
+                at: Place::Byte(self.at as u64),
+                what: "values of a function",
+                needed: count,
+                left: left as u64,
+            }),
+        }
+    }
+
+    /// All numbers up to the end of the dataset.
+    fn numbers(&mut self) -> Result<Vec<f64>, FormatFault> {
+        let mut numbers = Vec::new();
+        while let Some(line) = self.next() {
+            if line.trim() == "-1" {
+                self.values += numbers.len() as u64;
+                return Ok(numbers);
+            }
+            for word in apart(&line) {
+                let number = fortran(word).ok_or_else(|| FormatFault::Malformed {
+                    at: Place::Line(self.line),
+                    found: format!("'{}'", crate::error::shortened(word)),
+                    needed: "a number",
+                })?;
+                numbers.push(number);
+            }
+            within_limit(self.values + numbers.len() as u64)?;
+        }
+        Err(self.cut_off("the line that ends a dataset", 1, 0))
+    }
+}
+
+/// The numbers of a line, which may touch: `1.0E+00-2.0E+00`.
+fn apart(line: &str) -> impl Iterator<Item = &str> {
+    line.split_whitespace().flat_map(|word| {
+        let bytes = word.as_bytes();
+        let starts = (1..bytes.len()).filter(move |&k| {
+            matches!(bytes[k], b'+' | b'-') && !matches!(bytes[k - 1], b'e' | b'E' | b'd' | b'D')
+        });
+        let mut ends: Vec<usize> = starts.collect();
+        ends.push(word.len());
+        let mut from = 0;
+        ends.into_iter().map(move |end| {
+            // Signs are ASCII, and so no character is cut.
+            let part = &word[from..end];
+            from = end;
+            part
+        })
+    })
+}
+
+/// A number as Fortran writes it: `1.5D+03` too.
+fn fortran(word: &str) -> Option<f64> {
+    let value = match word.parse::<f64>() {
+        Ok(value) => value,
+        Err(_) => word.replace(['d', 'D'], "e").parse().ok()?,
+    };
+    Some(value)
+}

@@ -1,0 +1,177 @@
+//! Damaged and hostile files of every format: a record or one clear line, in bounded time.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use proptest::prelude::*;
+use simgap_record::{ReadOptions, parse_file};
+
+/// One of each reader, and of each way through it.
+const FILES: [&str; 8] = [
+    "vectors.mat",
+    "vectors-compressed.mat",
+    "struct.mat",
+    "ascii.uff",
+    "binary.uff",
+    "pairs.uff",
+    "waveform.tdms",
+    "logger.csv",
+];
+/// A damaged file of 20 kB is read in milliseconds; so long takes none.
+const LONGEST: Duration = Duration::from_secs(10);
+/// Minutes of the long run, for each reader: `SIMGAP_FUZZ_MINUTES=10 cargo test ... --ignored`.
+const MINUTES: &str = "SIMGAP_FUZZ_MINUTES";
+
+fn bytes_of(name: &str) -> Vec<u8> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/records");
+    std::fs::read(folder.join(name)).unwrap()
+}
+
+/// Reads, whatever comes of it; an error has one line.
+fn survives(name: &str, bytes: &[u8]) {
+    let start = Instant::now();
+    for options in [ReadOptions::all(), ReadOptions::channels(["u"], ["y"])] {
+        if let Err(error) = parse_file(name, bytes, &options) {
+            let line = error.to_string();
+            assert!(
+                !line.is_empty() && !line.contains(['\n', '\r']),
+                "{name}: {line}"
+            );
+        }
+    }
+    assert!(start.elapsed() < LONGEST, "{name}: {:?}", start.elapsed());
+}
+
+/// What is done to a file.
+#[derive(Debug, Clone)]
+enum Damage {
+    Cut(prop::sample::Index),
+    Flip(prop::sample::Index, u8),
+    /// All bits of a word set: a size of gigabytes or terabytes.
+    Claim(prop::sample::Index, bool),
+    Insert(prop::sample::Index, Vec<u8>),
+    Remove(prop::sample::Index, u8),
+    Repeat(prop::sample::Index, u8),
+}
+
+fn damage() -> impl Strategy<Value = Damage> {
+    let at = any::<prop::sample::Index>;
+    prop_oneof![
+        at().prop_map(Damage::Cut),
+        (at(), any::<u8>()).prop_map(|(at, bits)| Damage::Flip(at, bits)),
+        (at(), any::<bool>()).prop_map(|(at, long)| Damage::Claim(at, long)),
+        (at(), prop::collection::vec(any::<u8>(), 1..9)).prop_map(|(at, b)| Damage::Insert(at, b)),
+        (at(), any::<u8>()).prop_map(|(at, count)| Damage::Remove(at, count)),
+        (at(), any::<u8>()).prop_map(|(at, count)| Damage::Repeat(at, count)),
+    ]
+}
+
+fn damaged(mut bytes: Vec<u8>, damages: &[Damage]) -> Vec<u8> {
+    for damage in damages {
+        if bytes.is_empty() {
+            break;
+        }
+        let len = bytes.len();
+        let end = |at: usize, count: u8| (at + usize::from(count)).min(len);
+        match damage {
+            Damage::Cut(at) => bytes.truncate(at.index(len)),
+            Damage::Flip(at, bits) => bytes[at.index(len)] ^= bits,
+            Damage::Claim(at, long) => {
+                let at = at.index(len);
+                bytes[at..end(at, if *long { 8 } else { 4 })].fill(0xff);
+            }
+            Damage::Insert(at, new) => {
+                let at = at.index(len);
+                bytes.splice(at..at, new.iter().copied());
+            }
+            Damage::Remove(at, count) => {
+                let at = at.index(len);
+                bytes.drain(at..end(at, *count));
+            }
+            Damage::Repeat(at, count) => {
+                let at = at.index(len);
+                let again = bytes[at..end(at, *count)].to_vec();
+                bytes.splice(at..at, again);
+            }
+        }
+    }
+    bytes
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn prop_damaged_files_are_read_or_refused_in_one_line(
+        file in prop::sample::select(FILES.to_vec()),
+        damages in prop::collection::vec(damage(), 1..6),
+    ) {
+        survives(file, &damaged(bytes_of(file), &damages));
+    }
+
+    #[test]
+    fn prop_any_bytes_after_a_magic_are_read_or_refused_in_one_line(
+        file in prop::sample::select(FILES.to_vec()),
+        kept in 0usize..200,
+        bytes in prop::collection::vec(any::<u8>(), 0..600),
+    ) {
+        let head = bytes_of(file);
+        survives(file, &[&head[..kept.min(head.len())], &bytes].concat());
+    }
+}
+
+/// Every length a file can be cut to.
+#[test]
+fn verify_a_file_cut_anywhere_is_no_fault_of_ours() {
+    for file in FILES {
+        let bytes = bytes_of(file);
+        // All of the heads, some of the long rest.
+        let lengths = (0..bytes.len()).filter(|&k| k < 700 || k % 37 == 0);
+        for length in lengths {
+            survives(file, &bytes[..length]);
+        }
+    }
+}
+
+/// A block of zeros that unpacks to far more than the file: the limit stops it, not the memory.
+#[test]
+fn verify_a_bomb_does_not_go_off() {
+    use std::io::Write as _;
+    let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    let zeros = vec![0; 1 << 20];
+    for _ in 0..64 {
+        packed.write_all(&zeros).unwrap();
+    }
+    let packed = packed.finish().unwrap();
+    let mut bytes = bytes_of("vectors.mat")[..128].to_vec();
+    for _ in 0..40 {
+        bytes.extend(15_u32.to_le_bytes());
+        bytes.extend(u32::try_from(packed.len()).unwrap().to_le_bytes());
+        bytes.extend(&packed);
+    }
+    // 40 elements of 64 MiB are 2.5 GiB.
+    let error = parse_file("bomb.mat", &bytes, &ReadOptions::all()).unwrap_err();
+    insta::assert_snapshot!(error.to_string());
+}
+
+/// A long run with its own random numbers, a reader after the other.
+#[test]
+#[ignore = "takes the minutes it is given for each reader"]
+fn verify_a_long_run_of_damage() {
+    use proptest::strategy::ValueTree as _;
+    use proptest::test_runner::TestRunner;
+    let minutes: f64 = std::env::var(MINUTES).map_or(0.1, |text| text.parse().unwrap());
+    let mut runner = TestRunner::default();
+    let damages = prop::collection::vec(damage(), 1..8);
+    for file in FILES {
+        let whole = bytes_of(file);
+        let (start, mut runs) = (Instant::now(), 0_u64);
+        while start.elapsed().as_secs_f64() < 60.0 * minutes {
+            let damages = damages.new_tree(&mut runner).unwrap().current();
+            survives(file, &damaged(whole.clone(), &damages));
+            runs += 1;
+        }
+        println!("{file}: {runs} damaged files");
+    }
+}
