@@ -3,8 +3,14 @@
 //! A [`Record`] is a table of equally long columns over one evenly spaced time base. Every
 //! [`Channel`] keeps its values as they were written together with the [`Unit`] of its header;
 //! [`Channel::si_values`] converts on request and refuses a unit that does not fit the
-//! [`Quantity`] asked for. Whoever makes a record, from a file ([`read_csv`]) or from numbers
-//! ([`Record::new`]), passes the same checks, so that later crates need none of their own.
+//! [`Quantity`] asked for. Whoever makes a record, from a file ([`read_file`], of any [`Format`]) or
+//! from numbers ([`Record::new`]), passes the same checks, so that later crates need none of their
+//! own.
+//!
+//! A CSV of the contract's own form is read strictly. In a file of a logger or a measurement
+//! program the layout is guessed, missing samples are held and uneven stamps resampled, and every
+//! [`Note`] of a [`Reading`] says one of these things; [`ReadOptions`] chooses columns, names and
+//! units ([`ChannelMap`]) and whether faults are made good ([`Mend`]).
 //!
 //! ```
 //! use simgap_record::{Quantity, parse_csv};
@@ -42,6 +48,7 @@ mod select;
 mod tdms;
 mod time_base;
 mod uff;
+mod uff_lines;
 mod unit;
 mod write;
 
