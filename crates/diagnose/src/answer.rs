@@ -24,6 +24,9 @@ const TRIFLE: f64 = 0.01;
 /// Share of what a set leaves beyond the noise that a law of any shape at the place of a named effect
 /// may explain: more, and the law of this place is not the named one.
 const ANOTHER_LAW: f64 = 0.3;
+/// Share of the gap on the check records that a name which may be a stand-in may leave: with less, it
+/// serves as well as the law it stands in for.
+const STAND_IN_LEAVES: f64 = 0.03;
 /// What leaves less than this multiple of the noise leaves nothing.
 const NOTHING_BUT_NOISE: f64 = 1.1;
 /// How often a name is right that beats its rivals by far, and one that may be a stand-in; on
@@ -157,6 +160,7 @@ fn another_law(answer: &Answer, gap: &Gap) -> bool {
     let mut named = answer.judged.iter().map(|judged| &judged.placed);
     law.share > ANOTHER_LAW
         && gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor
+        && gap.closed < 1.0 - STAND_IN_LEAVES
         && gap.corrected > TRIFLE
         && named.any(|placed| placed.at == law.at && placed.effect.family() == law.effect.family())
 }
