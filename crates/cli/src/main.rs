@@ -75,10 +75,10 @@ fn refuse(message: &str) -> ExitCode {
     eprintln!("simgap: {line}");
     // One line is promised; a person at a terminal is also shown the place.
     let err = anstream::stderr();
-    if err.current_choice() != anstream::ColorChoice::Never || std::io::stderr().is_terminal() {
-        if let Some(picture) = pointer::picture(message) {
-            let _ = err.lock().write_all(picture.as_bytes());
-        }
+    let person = err.current_choice() != anstream::ColorChoice::Never;
+    let person = person || std::io::stderr().is_terminal();
+    if let Some(picture) = person.then(|| pointer::picture(message)).flatten() {
+        let _ = err.lock().write_all(picture.as_bytes());
     }
     ExitCode::from(BAD_INPUT)
 }

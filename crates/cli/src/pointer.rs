@@ -127,6 +127,11 @@ fn span(above: &[String], text: &str, message: &str) -> (usize, usize) {
     let about = message
         .split_once(": line ")
         .map_or(message, |(_, rest)| rest);
+    if let Some(from) = character(about) {
+        let word = |c: &char| c.is_alphanumeric() || "_-+.\"".contains(*c);
+        let len = text.chars().skip(from).take_while(word).count();
+        return (from, from + len.max(1));
+    }
     let chars = |byte: usize| text[..byte].chars().count();
     let column = about
         .split_once("column '")
@@ -145,6 +150,15 @@ fn span(above: &[String], text: &str, message: &str) -> (usize, usize) {
     let end = text.trim_end().len();
     let start = text.len() - text.trim_start().len();
     (chars(start.min(end)), chars(end))
+}
+
+/// The character of `N, column M: ...`, counted from 1 there.
+fn character(about: &str) -> Option<usize> {
+    let (line, rest) = about.split_once(", column ")?;
+    let (column, _) = rest.split_once(':')?;
+    let number = |digits: &str| digits.parse::<usize>().ok();
+    number(line)?;
+    number(column)?.checked_sub(1)
 }
 
 /// `column N`, counted from 1.
@@ -239,7 +253,10 @@ mod tests {
         assert_eq!(pointed(&german, "B.csv: line 2: column 'Weg' holds"), "1,5");
         let model = ["[[mass]]", "wieght = 1.0"];
         assert_eq!(
-            pointed(&model, "m: line 2: unknown field `wieght`, expected"),
+            pointed(
+                &model,
+                "m: line 2, column 1: unknown field `wieght`, expected"
+            ),
             "wieght"
         );
     }

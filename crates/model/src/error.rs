@@ -6,10 +6,12 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ModelError {
     /// The text is not TOML, or a key is missing, unknown or of the wrong type.
-    #[error("line {line}: {found}")]
+    #[error("line {line}, column {column}: {found}")]
     Syntax {
         /// Line of the model file, from 1.
         line: usize,
+        /// Character of the line, from 1.
+        column: usize,
         /// What the parser found and what it needs.
         found: String,
     },

@@ -95,13 +95,12 @@ impl EffectFile {
     }
 }
 
-fn line_of(text: &str, offset: usize) -> usize {
-    1 + text
-        .as_bytes()
-        .iter()
-        .take(offset)
-        .filter(|&&b| b == b'\n')
-        .count()
+/// Line and character of a byte of the text, both from 1.
+fn place_of(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    let line = 1 + before.matches('\n').count();
+    (line, 1 + before[start..].chars().count())
 }
 
 impl Model {
@@ -128,13 +127,16 @@ impl Model {
     /// # Ok::<(), simgap_model::ModelError>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Model, ModelError> {
-        let file: ModelFile = toml::from_str(text).map_err(|error| ModelError::Syntax {
-            line: error.span().map_or(1, |span| line_of(text, span.start)),
-            found: error
-                .message()
-                .split_whitespace()
-                .collect::<Vec<_>>()
-                .join(" "),
+        let file: ModelFile = toml::from_str(text).map_err(|error| {
+            let (line, column) = error
+                .span()
+                .map_or((1, 1), |span| place_of(text, span.start));
+            let words: Vec<&str> = error.message().split_whitespace().collect();
+            ModelError::Syntax {
+                line,
+                column,
+                found: words.join(" "),
+            }
         })?;
         if file.schema != SCHEMA {
             return Err(ModelError::Schema {
@@ -182,6 +184,7 @@ impl Model {
         };
         toml::to_string(&file).map_err(|error| ModelError::Syntax {
             line: 0,
+            column: 0,
             found: error.to_string(),
         })
     }

@@ -89,9 +89,7 @@ pub fn summary_text(diagnosis: &Diagnosis, styles: Styles) -> String {
     gap(&mut out, diagnosis);
     whereabouts(&mut out, diagnosis);
     rivals(&mut out, diagnosis);
-    if let Some(experiment) = &diagnosis.next_experiment {
-        out.named("next", &sentence(experiment));
-    }
+    out.named("next", &next(diagnosis));
     for (i, note) in diagnosis.notes.iter().take(FEW).enumerate() {
         out.named(if i == 0 { "notes" } else { "" }, &sentence(note));
     }
@@ -124,21 +122,35 @@ fn gap(out: &mut Lines, diagnosis: &Diagnosis) {
     out.named("noise floor", &floor);
 }
 
-/// The largest share of each kind.
+/// What to do now.
+fn next(diagnosis: &Diagnosis) -> String {
+    match (&diagnosis.next_experiment, diagnosis.verdict.status) {
+        (Some(experiment), _) => sentence(experiment),
+        (None, Status::None) => "Nothing: these records ask no more of the model.".to_owned(),
+        (None, Status::Unknown) => "See in the report where the gap lies.".to_owned(),
+        (None, Status::Parameters | Status::Effect) => {
+            "Try the corrected model on a record of another kind of motion.".to_owned()
+        }
+    }
+}
+
+/// The largest share of each kind, a line each; what cannot be otherwise is not said.
 fn whereabouts(out: &mut Lines, diagnosis: &Diagnosis) {
     let at = &diagnosis.r#where;
     let mut parts: Vec<String> = Vec::new();
     let mut add = |found: Option<(String, f64)>| {
-        parts.extend(found.map(|(name, share)| format!("{name} {}", percent(share))));
+        parts.extend(found.map(|(name, share)| format!("{} {name}", percent(share))));
     };
     add(top(at
         .locations
         .iter()
         .map(|l| (l.at.to_string(), l.share))));
-    add(top(at
-        .channels
-        .iter()
-        .map(|c| (format!("channel {}", c.channel), c.share))));
+    if at.channels.len() > 1 {
+        let channels = at.channels.iter();
+        add(top(
+            channels.map(|c| (format!("in channel {}", c.channel), c.share))
+        ));
+    }
     add(top(at.bands.iter().map(|b| {
         let range = range(b.from_hz, b.to_hz, "Hz");
         let name = if b.label.is_empty() {
@@ -148,9 +160,12 @@ fn whereabouts(out: &mut Lines, diagnosis: &Diagnosis) {
         };
         (name, b.share)
     })));
-    add(top(at.states.iter().map(|s| (s.label.clone(), s.share))));
-    if !parts.is_empty() {
-        out.named("where", &parts.join("; "));
+    add(top(at
+        .states
+        .iter()
+        .map(|s| (format!("at {}", s.label), s.share))));
+    for (i, part) in parts.iter().enumerate() {
+        out.named(if i == 0 { "where" } else { "" }, part);
     }
 }
 
@@ -185,17 +200,11 @@ fn rivals(out: &mut Lines, diagnosis: &Diagnosis) {
             out.named("could also be", &text);
         }
     }
-    let named = |kind: &str, at: &Location| {
-        diagnosis
-            .verdict
-            .effects
-            .iter()
-            .any(|e| e.kind == kind && &e.at == at)
-    };
+    // Beside a named effect, what did worse is for the report.
     let tried: Vec<String> = diagnosis
         .candidates
         .iter()
-        .filter(|c| !named(&c.kind, &c.at))
+        .filter(|_| diagnosis.verdict.status == Status::Unknown)
         .take(FEW)
         .map(|c| {
             format!(
