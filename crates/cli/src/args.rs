@@ -112,6 +112,8 @@ pub(crate) struct CheckArgs {
     /// Record to look at (CSV); may be several.
     #[arg(required = true, value_name = "RECORD")]
     pub(crate) records: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: RecordArgs,
     /// What is printed.
     #[arg(long, value_enum, default_value = "human")]
     pub(crate) format: Format,
@@ -136,9 +138,11 @@ pub(crate) struct CompareArgs {
     /// Measured record (CSV).
     #[arg(long, value_name = "CSV")]
     pub(crate) measured: PathBuf,
-    /// Simulated record (CSV), of any simulator.
+    /// Simulated record (CSV), of any simulator; --map is about the measured one, steps may be uneven.
     #[arg(long, value_name = "CSV")]
     pub(crate) simulated: PathBuf,
+    #[command(flatten)]
+    pub(crate) reading: RecordArgs,
     /// Columns to compare where their names differ; may be given several times [default: columns of
     /// the same name].
     #[arg(long, value_name = "MEASURED=SIMULATED")]
@@ -179,6 +183,8 @@ pub(crate) struct InitArgs {
     /// Record whose columns are filled in (CSV).
     #[arg(long, value_name = "CSV")]
     pub(crate) record: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: RecordArgs,
     /// Model file to write; without it the text goes to stdout.
     #[arg(long, value_name = "TOML")]
     pub(crate) out: Option<PathBuf>,

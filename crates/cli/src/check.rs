@@ -1,12 +1,11 @@
 //! `simgap check`: what records hold, before a model has to make sense of them.
 
 use serde::Serialize;
-use simgap_record::{
-    Channel, Defect, QualityFinding, Quantity, Record, UnitKind, quality, read_csv,
-};
+use simgap_record::{Channel, Defect, QualityFinding, Quantity, UnitKind, quality};
 
 use crate::args::{CheckArgs, Format};
 use crate::error::CliError;
+use crate::input::{self, Input};
 use crate::text::{STRONG, figure, named, shown, styled, table};
 use crate::{say, say_plain};
 
@@ -20,8 +19,8 @@ const SAME_RATE: f64 = 1e-3;
 pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {
     let mut records = Vec::new();
     for path in &args.records {
-        let record = read_csv(path)?;
-        records.push(Checked::new(path.display().to_string(), &record));
+        let input = input::table(path, &args.reading)?;
+        records.push(Checked::new(path.display().to_string(), &input));
     }
     let differences = differences(&records);
     match args.format {
@@ -56,6 +55,8 @@ struct Checked {
     rows: usize,
     time: TimeBase,
     columns: Vec<Column>,
+    /// What was guessed or changed to read it: the layout, missing samples, uneven stamps.
+    notes: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -93,7 +94,8 @@ struct Finding {
 }
 
 impl Checked {
-    fn new(file: String, record: &Record) -> Checked {
+    fn new(file: String, input: &Input) -> Checked {
+        let record = &input.record;
         let findings = quality(record);
         let of = |name: &str| {
             let mine = findings.iter().filter(|finding| finding.channel == name);
@@ -121,6 +123,7 @@ impl Checked {
                 .iter()
                 .map(|channel| Column::new(channel, of(&channel.name)))
                 .collect(),
+            notes: input.notes.clone(),
         }
     }
 }
@@ -192,6 +195,9 @@ fn told(text: &mut String, record: &Checked) {
     }
     if findings.is_empty() {
         named(text, "quality", "nothing odd", INDENT);
+    }
+    for (i, note) in record.notes.iter().enumerate() {
+        named(text, if i == 0 { "notes" } else { "" }, note, INDENT);
     }
     text.push('\n');
 }

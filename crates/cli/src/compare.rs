@@ -4,7 +4,7 @@ use std::path::Path;
 
 use simgap_diagnose::Status;
 use simgap_diagnose::compare::{Agreement, CompareRequest, Compared, Comparison, compare};
-use simgap_record::{read_csv, write_csv_atomic, write_text_atomic};
+use simgap_record::{write_csv_atomic, write_text_atomic};
 use simgap_report::lines::answer_lines;
 use simgap_report::page::{ReportContext, report_html};
 
@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::folder::{Folder, not_an_input};
 use crate::progress::Steps;
 use crate::text::{STRONG, figure, named, shown, styled};
-use crate::{json, say, say_plain};
+use crate::{input, json, say, say_plain};
 
 /// Where the text of a named line begins.
 const INDENT: usize = 14;
@@ -31,18 +31,23 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
         Folder::attempt(out, &[], &files)?;
     }
     let pairs = pairs(&args.pair)?;
-    let (measured, simulated) = (read_csv(&args.measured)?, read_csv(&args.simulated)?);
+    let measured = input::table(&args.measured, &args.reading)?;
+    let simulated = input::simulated(&args.simulated)?;
     let request = CompareRequest {
-        measured: &measured,
-        simulated: &simulated,
+        measured: &measured.record,
+        simulated: &simulated.record,
         pairs: &pairs,
         inputs: &args.input,
         align_start: args.align_start,
     };
-    let compared = {
+    let mut compared = {
         let steps = Steps::new();
         compare(&request, &|step| steps.show(step))?
     };
+    for note in measured.notes.into_iter().chain(simulated.notes) {
+        compared.diagnosis.notes.push(note.clone());
+        compared.comparison.notes.push(note);
+    }
     let text = json(&compared.comparison)?;
     if let Some(out) = &args.out {
         write(&compared, &text, out)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use simgap_effects::Placed;
 use simgap_model::Model;
-use simgap_record::{Quantity, ReadOptions, Record, RecordError, read_file};
+use simgap_record::{Mend, Quantity, ReadOptions, Reading, Record, RecordError, read_file};
 use simgap_simulate::{input_quantity, output_quantity};
 
 use crate::error::CliError;
@@ -64,6 +64,29 @@ pub(crate) fn record_of_inputs(
     read(path, model, args, options)
 }
 
+/// Reads every column of a record that holds numbers.
+pub(crate) fn table(path: &Path, args: &RecordArgs) -> Result<Input, CliError> {
+    let map = args.map().map_err(RecordError::from)?;
+    let options = ReadOptions::all().with_map(map).with_mend(args.mend());
+    Ok(told(read_file(path, &options)?))
+}
+
+/// As [`table`], of what a simulator wrote: its columns as they are called, its steps as it took
+/// them.
+pub(crate) fn simulated(path: &Path) -> Result<Input, CliError> {
+    let options = ReadOptions::all().with_mend(Mend::Always);
+    Ok(told(read_file(path, &options)?))
+}
+
+fn told(reading: Reading) -> Input {
+    let name = reading.record.name();
+    let notes = reading.notes.iter().map(|note| format!("{name}: {note}"));
+    Input {
+        notes: notes.collect(),
+        record: reading.record,
+    }
+}
+
 fn read(
     path: &Path,
     model: &Model,
@@ -74,11 +97,8 @@ fn read(
     let channels: Vec<&str> = inputs(model).chain(outputs(model)).collect();
     map.check_channels(&channels).map_err(RecordError::from)?;
     let options = options.with_map(map).with_mend(args.mend());
-    let reading = read_file(path, &options)?;
-    let name = reading.record.name();
-    let notes = reading.notes.iter().map(|note| format!("{name}: {note}"));
-    let notes = notes.collect();
-    let record = checked(path, model, reading.record)?;
+    let Input { record, notes } = told(read_file(path, &options)?);
+    let record = checked(path, model, record)?;
     Ok(Input { record, notes })
 }
 

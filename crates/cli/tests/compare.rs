@@ -158,3 +158,30 @@ fn regress_comparisons_that_are_refused() {
     refused("no such file", &Bench::new(), &[]);
     insta::assert_snapshot!(lines);
 }
+
+/// A logger's own names and layout, and the uneven steps of a solver.
+#[test]
+fn verify_a_logger_and_a_solver_meet() {
+    let bench = late();
+    let table = bench.read("m.csv").replace(',', ";").replace('.', ",");
+    let table = table.replace("t [s];u [N];y [mm]", "Zeit (s);Kraft (N);Weg (mm)");
+    bench.write("m.csv", format!("Logger 7\n{table}"));
+    let mut uneven = String::from("t [s],y [mm]\n");
+    let mut t: f64 = 0.0;
+    while t < 15.5 {
+        writeln!(uneven, "{t:.6},{:.7}", motion(t)).unwrap();
+        t += 0.002 * (1.0 + 0.8 * (3.0 * t).sin());
+    }
+    bench.write("s.csv", uneven);
+    let mapped = [&ARGUMENTS[..], &["--map", "y=Weg", "--format", "json"]].concat();
+    let json: Value = serde_json::from_str(&bench.done(&mapped)).unwrap();
+    assert_eq!(
+        json["chain"]["effects"][0]["kind"], "sensor_delay",
+        "{json}"
+    );
+    let notes = json["notes"].to_string();
+    assert!(
+        notes.contains("s.csv") && notes.contains("m.csv"),
+        "{notes}"
+    );
+}

@@ -6,11 +6,12 @@ mod template;
 use std::path::Path;
 
 use simgap_model::Model;
-use simgap_record::{Record, read_csv, write_text_atomic};
+use simgap_record::{Record, write_text_atomic};
 
 use crate::args::InitArgs;
 use crate::error::CliError;
 use crate::folder::{Folder, not_an_input};
+use crate::input::{self, Input};
 use crate::text::{STRONG, figure, named, shown, styled, table};
 use crate::{say, say_plain};
 use guess::{Roles, roles};
@@ -27,7 +28,14 @@ pub(crate) fn run(args: &InitArgs) -> Result<(), CliError> {
             not_an_input(out, &[record])?;
         }
     }
-    let record = args.record.as_deref().map(read_csv).transpose()?;
+    let read = args.record.as_deref();
+    let read = read
+        .map(|path| input::table(path, &args.reading))
+        .transpose()?;
+    let (record, notes) = match read {
+        Some(Input { record, notes }) => (Some(record), notes),
+        None => (None, vec![]),
+    };
     let roles = roles(args.like, record.as_ref());
     let text = template::model_file(&roles, record.as_ref());
     let path = || args.out.clone().unwrap_or_else(|| "model.toml".into());
@@ -47,7 +55,11 @@ pub(crate) fn run(args: &InitArgs) -> Result<(), CliError> {
     let folder = Folder::make(parent, &[], std::slice::from_ref(out))?;
     write_text_atomic(out, &text)?;
     folder.keep();
-    say(&told(args, &roles, record.as_ref(), out));
+    let mut told = told(args, &roles, record.as_ref(), out);
+    for (i, note) in notes.iter().enumerate() {
+        named(&mut told, if i == 0 { "notes" } else { "" }, note, INDENT);
+    }
+    say(&told);
     Ok(())
 }
 
@@ -81,7 +93,8 @@ fn told(args: &InitArgs, roles: &Roles, record: Option<&Record>, out: &Path) -> 
     named(&mut text, "written", &model.to_string(), INDENT);
     let next = match &args.record {
         Some(record) => format!(
-            "put in your numbers, then: simgap simulate {model} --record {} --out predicted.csv",
+            "put in your numbers, then{}: simgap simulate {model} --record {} --out predicted.csv",
+            args.reading.reminder(),
             record.display()
         ),
         None => format!(
