@@ -109,7 +109,7 @@ pub(crate) struct EffectsArgs {
 
 #[derive(Args)]
 pub(crate) struct CheckArgs {
-    /// Record to look at (CSV); may be several.
+    /// Record to look at (CSV, MAT, UFF and more); may be several.
     #[arg(required = true, value_name = "RECORD")]
     pub(crate) records: Vec<PathBuf>,
     #[command(flatten)]
@@ -135,11 +135,11 @@ pub(crate) struct ManArgs {
 
 #[derive(Args)]
 pub(crate) struct CompareArgs {
-    /// Measured record (CSV).
-    #[arg(long, value_name = "CSV")]
+    /// Measured record (CSV, MAT, UFF and more); --map is about this one.
+    #[arg(long, value_name = "RECORD")]
     pub(crate) measured: PathBuf,
-    /// Simulated record (CSV), of any simulator; --map is about the measured one, steps may be uneven.
-    #[arg(long, value_name = "CSV")]
+    /// Record of any simulator (CSV, MAT, UFF and more); its steps may be uneven.
+    #[arg(long, value_name = "RECORD")]
     pub(crate) simulated: PathBuf,
     #[command(flatten)]
     pub(crate) reading: RecordArgs,
@@ -180,8 +180,8 @@ pub(crate) struct InitArgs {
     /// Machine to start from [default: what the columns of the record look like].
     #[arg(long, value_enum)]
     pub(crate) like: Option<Like>,
-    /// Record whose columns are filled in (CSV).
-    #[arg(long, value_name = "CSV")]
+    /// Record whose columns are filled in (CSV, MAT, UFF and more).
+    #[arg(long, value_name = "RECORD")]
     pub(crate) record: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reading: RecordArgs,

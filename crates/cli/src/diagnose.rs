@@ -144,6 +144,11 @@ fn command_line(args: &DiagnoseArgs) -> String {
             option(name, file_name(path));
         }
     }
+    for (name, value) in args.records.words() {
+        words.push(name.to_string());
+        words.extend(value);
+    }
+    let mut option = |name: &str, value: String| words.extend([name.to_string(), value]);
     for kind in &args.withhold {
         option("--withhold", kind.clone());
     }

@@ -23,6 +23,12 @@ impl RecordArgs {
         ChannelMap::parse(&self.map)
     }
 
+    /// The arguments again, each with its value, for a command that is to repeat this one.
+    pub(crate) fn words(&self) -> impl Iterator<Item = (&'static str, Option<String>)> {
+        let map = self.map.iter().map(|entry| ("--map", Some(entry.clone())));
+        map.chain(self.mend.then_some(("--mend", None)))
+    }
+
     /// What a proposed command must not leave out.
     pub(crate) fn reminder(&self) -> &'static str {
         match (self.map.is_empty(), self.mend) {

@@ -57,6 +57,9 @@ fn verify_a_diagnosis_notes_what_was_guessed() {
     ] {
         assert!(json.contains(note), "{note} not in {json}");
     }
+    // The command that repeats it has what was read as what.
+    let page = bench.read("out/report.html");
+    assert!(page.contains("--map u=Kraft --map y=Pos_Block"));
 }
 
 #[test]
