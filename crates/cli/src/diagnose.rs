@@ -12,6 +12,7 @@ use crate::args::{DiagnoseArgs, Format};
 use crate::error::CliError;
 use crate::folder::Folder;
 use crate::progress::Steps;
+use crate::text::command;
 use crate::{input, say};
 
 /// Folder of the predictions, inside the folder of the results.
@@ -156,17 +157,7 @@ fn command_line(args: &DiagnoseArgs) -> String {
         option("--seed", args.seed.to_string());
     }
     option("--out", "DIR".to_string());
-    let quoted: Vec<String> = words.iter().map(|word| quoted(word)).collect();
-    quoted.join(" ")
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./+=:,@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_string();
-    }
-    format!("'{}'", word.replace('\'', "'\\''"))
+    command(&words)
 }
 
 /// The files of a result.

@@ -29,16 +29,6 @@ impl RecordArgs {
         map.chain(self.mend.then_some(("--mend", None)))
     }
 
-    /// What a proposed command must not leave out.
-    pub(crate) fn reminder(&self) -> &'static str {
-        match (self.map.is_empty(), self.mend) {
-            (true, false) => "",
-            (true, true) => ", with --mend again",
-            (false, false) => ", with the same --map",
-            (false, true) => ", with the same --map and --mend",
-        }
-    }
-
     /// When faults are made good.
     pub(crate) fn mend(&self) -> Mend {
         if self.mend {

@@ -76,6 +76,19 @@ pub(crate) fn table(out: &mut String, head: &[&str], rows: &[Vec<String>], right
     }
 }
 
+/// Words as a shell takes them.
+pub(crate) fn command(words: &[String]) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./+=:,@%".contains(c);
+    let quoted = |word: &String| {
+        if !word.is_empty() && word.chars().all(plain) {
+            word.clone()
+        } else {
+            format!("'{}'", word.replace('\'', "'\\''"))
+        }
+    };
+    words.iter().map(quoted).collect::<Vec<_>>().join(" ")
+}
+
 /// Text from a file as a terminal may see it: nothing in it is obeyed.
 pub(crate) fn shown(text: &str) -> String {
     text.chars()
@@ -90,7 +103,7 @@ pub(crate) fn figure(value: f64) -> String {
     }
     // Rounded to four digits, and then the fewest digits that say the same.
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    if (1e-3..1e6).contains(&rounded.abs()) {
+    if (1e-4..1e6).contains(&rounded.abs()) {
         format!("{rounded}")
     } else {
         format!("{rounded:e}")
@@ -109,6 +122,12 @@ mod tests {
             told,
             ["0", "1", "-0.1", "0.6667", "12350", "3.333e-10", "8e9"]
         );
+    }
+
+    #[test]
+    fn verify_a_shell_takes_the_words_of_a_command() {
+        let words = ["y=Pos", "y=Pos [mm]", "it's", ""].map(str::to_owned);
+        assert_eq!(command(&words), r"y=Pos 'y=Pos [mm]' 'it'\''s' ''");
     }
 
     #[test]

@@ -37,14 +37,22 @@ pub(crate) fn effect_at(name: &str, at: &Location) -> String {
     format!("{} {}", kind(name), place(at))
 }
 
-/// First letter raised and a full stop set, if they are missing.
+/// First letter raised and a full stop set, if they are missing. A name stays as it is: of a file or
+/// of a channel, told by what no word has.
 pub(crate) fn sentence(text: &str) -> String {
     let text = text.trim();
     let mut chars = text.chars();
     let Some(first) = chars.next() else {
         return String::new();
     };
-    let mut out: String = first.to_uppercase().chain(chars).collect();
+    let word = text.split(' ').next().unwrap_or_default();
+    let letters = |c: char| c.is_alphabetic() || "-',".contains(c);
+    let name = !word.chars().all(letters) || (word.len() == 1 && word != "a");
+    let mut out: String = if name {
+        text.to_owned()
+    } else {
+        first.to_uppercase().chain(chars).collect()
+    };
     if !out.ends_with(['.', '!', '?', ':', ')']) || (out.ends_with(')') && !out.ends_with(".)")) {
         out.push('.');
     }
@@ -207,6 +215,9 @@ mod tests {
     fn verify_sentences_are_closed_once() {
         assert_eq!(sentence("it falls by 3.2"), "It falls by 3.2.");
         assert_eq!(sentence("Done."), "Done.");
+        assert_eq!(sentence("a.csv: read"), "a.csv: read.");
+        assert_eq!(sentence("y is flat"), "y is flat.");
+        assert_eq!(sentence("a mass"), "A mass.");
         assert_eq!(sentence("as well (needed is 3)"), "As well (needed is 3).");
         assert_eq!(sentence("  "), "");
         assert_eq!(list(&["a".into(), "b".into(), "c".into()]), "a, b and c");

@@ -58,7 +58,7 @@ fn verify_names_from_files_cannot_command_the_terminal() {
     let mut d = common::effect();
     d.notes = vec!["a\u{1b}[31mred\nline\u{7}".into()];
     let text = summary_text(&d, Styles::plain());
-    assert!(text.contains("A[31mred line.") && !text.contains('\u{1b}') && !text.contains('\u{7}'));
+    assert!(text.contains("a[31mred line.") && !text.contains('\u{1b}') && !text.contains('\u{7}'));
 }
 
 #[test]

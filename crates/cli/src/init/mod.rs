@@ -12,7 +12,7 @@ use crate::args::InitArgs;
 use crate::error::CliError;
 use crate::folder::{Folder, not_an_input};
 use crate::input::{self, Input};
-use crate::text::{STRONG, figure, named, shown, styled, table};
+use crate::text::{STRONG, command, figure, named, shown, styled, table};
 use crate::{say, say_plain};
 use guess::{Roles, roles};
 
@@ -92,16 +92,25 @@ fn told(args: &InitArgs, roles: &Roles, record: Option<&Record>, out: &Path) -> 
     let model = out.display();
     named(&mut text, "written", &model.to_string(), INDENT);
     let next = match &args.record {
-        Some(record) => format!(
-            "put in your numbers, then{}: simgap simulate {model} --record {} --out predicted.csv",
-            args.reading.reminder(),
-            record.display()
-        ),
-        None => format!(
-            "put in your numbers and columns, then: simgap simulate {model} --record RECORD --out \
-             predicted.csv"
-        ),
+        Some(_) => "put in your numbers, then",
+        None => "put in your numbers and columns, then",
     };
-    named(&mut text, "next", &next, INDENT);
+    named(&mut text, "next", next, INDENT);
+    // On a line of its own, whatever its length: it is there to be copied.
+    text.push_str(&format!("{:INDENT$}{}\n", "", shown(&try_it(args, out))));
     text
+}
+
+/// The command that tries the model on the record.
+fn try_it(args: &InitArgs, model: &Path) -> String {
+    let record = args.record.as_deref().unwrap_or(Path::new("RECORD"));
+    let word = |path: &Path| path.display().to_string();
+    let mut words = vec!["simgap".into(), "simulate".into(), word(model)];
+    words.extend(["--record".into(), word(record)]);
+    for (name, value) in args.reading.words() {
+        words.push(name.into());
+        words.extend(value);
+    }
+    words.extend(["--out".into(), "predicted.csv".into()]);
+    command(&words)
 }
