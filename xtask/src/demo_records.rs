@@ -213,10 +213,10 @@ fn placed(kind: &'static str, at: Location, value: f64) -> Result<Placed, DemoEr
 }
 
 /// White noise of unit variance, uniformly distributed: SplitMix64.
-struct Noise(u64);
+pub(crate) struct Noise(pub(crate) u64);
 
 impl Noise {
-    fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

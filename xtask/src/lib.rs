@@ -5,3 +5,4 @@ pub mod demo_records;
 pub mod effects_docs;
 pub mod reproduce;
 pub mod tidy;
+pub mod tutorial_records;

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use xtask::{blind_check, demo_records, effects_docs, reproduce, tidy};
+use xtask::{blind_check, demo_records, effects_docs, reproduce, tidy, tutorial_records};
 
 #[derive(Parser)]
 #[command(name = "xtask", about = "Project tasks")]
@@ -25,6 +25,8 @@ enum Task {
     BlindWorker(blind_check::WorkerArgs),
     /// Write docs/effects.md from the catalogue of effects
     EffectsDocs(effects_docs::Args),
+    /// Make the logger files that docs/tutorial.md works with
+    TutorialRecords(tutorial_records::TutorialArgs),
     /// Check the rules that keep the workspace in shape
     Tidy,
 }
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
         Task::BlindCheck(args) => return blind_check::main(&args),
         Task::BlindWorker(args) => return blind_check::worker_main(&args),
         Task::EffectsDocs(args) => return finish(effects_docs::run(&args)),
+        Task::TutorialRecords(args) => return finish(tutorial_records::run(&args)),
         Task::Tidy => return finish(tidy::run()),
     };
     match outcome {

@@ -152,3 +152,9 @@ fn verify_the_links_of_the_pages_lead_somewhere() {
     assert!(count >= 60, "{count} links");
     assert!(broken.is_empty(), "\n{}", broken.join("\n"));
 }
+
+#[test]
+fn verify_the_records_of_the_tutorial_are_what_the_command_makes() {
+    let differences = xtask::tutorial_records::differences().unwrap();
+    assert!(differences.is_empty(), "\n{}", differences.join("\n"));
+}
