@@ -215,6 +215,7 @@ pub(crate) fn write(
     let report = report(&ReportInput {
         diagnosis: &outcome.diagnosis,
         series: &outcome.series,
+        motions: &[],
         nominal: Some(model),
         corrected: Some(&outcome.corrected),
         context,

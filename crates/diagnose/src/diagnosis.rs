@@ -281,3 +281,16 @@ pub struct ChannelSeries {
     /// Predicted with the named effects.
     pub corrected: Vec<f64>,
 }
+
+/// The motion across one place along a check record, as the model as given predicts it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaceMotion {
+    /// File name of the record.
+    pub record: String,
+    /// The place.
+    pub at: Location,
+    /// One value for each sample, m.
+    pub displacement: Vec<f64>,
+    /// One value for each sample, m/s.
+    pub velocity: Vec<f64>,
+}

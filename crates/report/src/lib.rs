@@ -18,7 +18,9 @@ pub mod lines;
 pub mod page;
 pub mod summary;
 
+mod bands;
 mod markup;
 mod number;
+mod restoring;
 mod unit;
 mod wording;

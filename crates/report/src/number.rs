@@ -12,25 +12,62 @@ pub(crate) fn percent(share: f64) -> String {
     }
 }
 
+/// A relative change to two digits, with its sign: `+0.12 %`, `−8.5 %`, `+230 %`.
+pub(crate) fn change(relative: f64) -> String {
+    let sign = if relative > 0.0 { "+" } else { "" };
+    format!("{sign}{}\u{a0}%", significant(100.0 * relative, 2))
+}
+
+/// A gap below this is told as such.
+const NO_GAP: f64 = 1e-5;
+
 /// A ratio such as a gap, to three digits: `0.412`, `0.0210`, `1.73`; a dash if not finite.
 pub(crate) fn ratio(value: f64) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
+    if value > 0.0 && value < NO_GAP {
+        return "< 10⁻⁵".to_owned();
+    }
     significant(value, 3)
+}
+
+/// To so many digits, without trailing zeros after the point.
+pub(crate) fn trimmed(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    if text.contains('.') && !text.contains('·') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// The decimal numbers of a text to four digits: "68.3301 Hz" is "68.33 Hz", "2.0000 Hz" is "2 Hz".
+pub(crate) fn fewer_digits(text: &str) -> String {
+    let part = |c: char| c.is_alphanumeric() || matches!(c, '.' | '_');
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find(part) {
+        let (before, from) = rest.split_at(start);
+        let (word, after) = from.split_at(from.find(|c| !part(c)).unwrap_or(from.len()));
+        out.push_str(before);
+        let point = word.trim_end_matches('.');
+        let digits = point.chars().all(|c| c.is_ascii_digit() || c == '.');
+        match point.parse::<f64>() {
+            Ok(value) if digits && point.contains('.') => {
+                out.push_str(&trimmed(value, 4));
+                out.push_str(&word[point.len()..]);
+            }
+            _ => out.push_str(word),
+        }
+        rest = after;
+    }
+    out + rest
 }
 
 /// "2.9–3.1 Hz", to three digits without trailing zeros.
 pub(crate) fn range(from: f64, to: f64, unit: &str) -> String {
-    let short = |value: f64| {
-        let text = significant(value, 3);
-        if text.contains('.') && !text.contains('·') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        }
-    };
-    format!("{}–{}\u{a0}{unit}", short(from), short(to))
+    format!("{}–{}\u{a0}{unit}", trimmed(from, 3), trimmed(to, 3))
 }
 
 /// `value` to `digits` significant digits, in tenfold notation where it would be long.
@@ -108,6 +145,18 @@ mod tests {
         for (share, text) in cases {
             assert_eq!(percent(share), text);
         }
+    }
+
+    #[test]
+    fn verify_changes_and_numbers_in_a_text() {
+        assert_eq!(change(-0.001_2), "−0.12\u{a0}%");
+        assert_eq!(change(0.085), "+8.5\u{a0}%");
+        assert_eq!(change(2.345), "+230\u{a0}%");
+        assert_eq!(ratio(1.1e-9), "< 10⁻⁵");
+        assert_eq!(
+            fewer_digits("near 68.3301 Hz, 2.0000 Hz of train-1.csv, v1.2.3 and 0.5."),
+            "near 68.33 Hz, 2 Hz of train-1.csv, v1.2.3 and 0.5."
+        );
     }
 
     #[test]

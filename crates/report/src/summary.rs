@@ -3,7 +3,7 @@
 use simgap_diagnose::{Diagnosis, Status};
 use simgap_model::Location;
 
-use crate::number::{percent, range, ratio};
+use crate::number::{percent, ratio};
 use crate::wording::{effect_at, headline, particulars, sentence};
 
 /// Columns of text.
@@ -151,15 +151,8 @@ fn whereabouts(out: &mut Lines, diagnosis: &Diagnosis) {
             channels.map(|c| (format!("in channel {}", c.channel), c.share))
         ));
     }
-    add(top(at.bands.iter().map(|b| {
-        let range = range(b.from_hz, b.to_hz, "Hz");
-        let name = if b.label.is_empty() {
-            range
-        } else {
-            format!("{} ({range})", b.label)
-        };
-        (name, b.share)
-    })));
+    let bands = crate::bands::told(&at.bands);
+    add(top(bands.iter().map(|b| (b.name(), b.share))));
     add(top(at
         .states
         .iter()
@@ -208,9 +201,8 @@ fn rivals(out: &mut Lines, diagnosis: &Diagnosis) {
         .take(FEW)
         .map(|c| {
             format!(
-                "{} {} (gap {})",
+                "{} (gap {})",
                 effect_at(&c.kind, &c.at),
-                percent(c.probability),
                 ratio(c.held_back_gap)
             )
         })

@@ -122,7 +122,7 @@ pub(crate) struct Estimate {
     pub(crate) value: String,
     /// Such as "2.05 to 2.15\u{a0}kN", or that the data do not bound it.
     pub(crate) interval: String,
-    /// Such as "2.10 ± 0.05\u{a0}kN"; the value alone where the interval has no end or is lopsided.
+    /// Such as "2.10\u{a0}±\u{a0}0.05\u{a0}kN"; the value alone where the interval has no end or is lopsided.
     pub(crate) plus_minus: String,
 }
 
@@ -172,13 +172,13 @@ fn even_half(parameter: &NamedParameter) -> Option<f64> {
     (half.is_finite() && half > 0.0 && even).then_some(half)
 }
 
-/// "2.10 ± 0.05": one digit of the uncertainty, two where it begins with 1.
+/// "2.10\u{a0}±\u{a0}0.05": one digit of the uncertainty, two where it begins with 1.
 fn plus_minus(value: f64, half: f64) -> String {
     let leading = decimal_exponent(half);
     let begins_with_1 = half < 1.95 * 10f64.powi(leading);
     let resolution = (leading - i32::from(begins_with_1)).max(decimal_exponent(value) - 5);
     format!(
-        "{} ± {}",
+        "{}\u{a0}±\u{a0}{}",
         at_resolution(value, resolution),
         at_resolution(half, resolution)
     )
@@ -228,8 +228,11 @@ mod tests {
             let ci95 = [low, high];
             estimate(&NamedParameter { name, value, ci95 }, "").plus_minus
         };
-        assert_eq!(shown(2104.3, 2051.0, 2157.6), "2.10 ± 0.05\u{a0}kN");
-        assert_eq!(shown(20.43, 20.31, 20.55), "20.43 ± 0.12\u{a0}N");
+        assert_eq!(
+            shown(2104.3, 2051.0, 2157.6),
+            "2.10\u{a0}±\u{a0}0.05\u{a0}kN"
+        );
+        assert_eq!(shown(20.43, 20.31, 20.55), "20.43\u{a0}±\u{a0}0.12\u{a0}N");
         assert_eq!(shown(20.43, 20.0, f64::INFINITY), "20.4\u{a0}N");
         // Lopsided: the two ends are told elsewhere.
         assert_eq!(shown(20.43, 20.0, 25.0), "20.4\u{a0}N");

@@ -37,6 +37,46 @@ pub(crate) fn effect_at(name: &str, at: &Location) -> String {
     format!("{} {}", kind(name), place(at))
 }
 
+/// A text of the diagnosis for a reader: catalogue names in words ("stribeck_friction" is "Stribeck
+/// friction"), a true minus, no more digits than say something.
+pub(crate) fn plain(text: &str) -> String {
+    if let Some(worth) = text
+        .strip_prefix("log evidence falls by ")
+        .and_then(|rest| rest.strip_suffix(" without it"))
+    {
+        return format!(
+            "without it these records are harder to explain (log evidence lower by {})",
+            crate::number::fewer_digits(worth)
+        );
+    }
+    let text = crate::number::fewer_digits(&in_words(text));
+    text.replace(" -", " −").replace("(-", "(−")
+}
+
+fn in_words(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut rest = text;
+    while let Some(start) = rest.find(is_word) {
+        let (before, from) = rest.split_at(start);
+        let (word, after) = from.split_at(from.find(|c| !is_word(c)).unwrap_or(from.len()));
+        out.push_str(before);
+        if word.contains('_') && simgap_effects::find(word).is_some() {
+            out.push_str(&kind(word));
+            // A place that follows needs its preposition.
+            match after.trim_start().split(' ').next() {
+                Some("channel" | "input") => out.push_str(" in"),
+                Some("mass") => out.push_str(" on"),
+                _ => {}
+            }
+        } else {
+            out.push_str(word);
+        }
+        rest = after;
+    }
+    out + rest
+}
+
 /// First letter raised and a full stop set, if they are missing. A name stays as it is: of a file or
 /// of a channel, told by what no word has.
 pub(crate) fn sentence(text: &str) -> String {
@@ -166,7 +206,10 @@ pub(crate) fn particulars(
             ratio(gap.nominal),
             ratio(gap.noise_floor)
         )),
-        Status::Unknown => out.extend(diagnosis.verdict.description.iter().map(|d| sentence(d))),
+        Status::Unknown => {
+            let said = diagnosis.verdict.description.iter();
+            out.extend(said.map(|d| sentence(&plain(d))));
+        }
         Status::Parameters | Status::Effect => {}
     }
     let alone = diagnosis.verdict.effects.len() == 1;
@@ -182,7 +225,25 @@ pub(crate) fn particulars(
             format!("{}: {text}", effect_at(&effect.kind, &effect.at))
         }));
     }
+    out.extend(stand_in(diagnosis));
     out
+}
+
+/// A word of warning where a named effect may only stand in for a law that the catalogue lacks.
+fn stand_in(diagnosis: &Diagnosis) -> Option<String> {
+    let effects = diagnosis.verdict.effects.iter().filter(|e| e.stand_in);
+    let names: Vec<String> = effects.map(|e| kind(&e.kind)).collect();
+    let (they, their) = if names.len() == 1 {
+        ("its name", "its prediction")
+    } else {
+        ("their names", "their prediction")
+    };
+    (!names.is_empty()).then(|| {
+        sentence(&format!(
+            "{} may stand in for a law that the catalogue does not have: trust {their} more than {they}",
+            list(&names)
+        ))
+    })
 }
 
 /// What the third prediction is called in legends.
@@ -209,6 +270,24 @@ mod tests {
             "sensor delay in channel y"
         );
         assert_eq!(place(&Location::Mass("m".into())), "on mass m");
+    }
+
+    #[test]
+    fn verify_catalogue_names_in_a_text_become_words() {
+        assert_eq!(
+            plain("to tell coulomb_friction from input_delay: y_mold (1 mm), 5 %"),
+            "to tell Coulomb friction from input delay: y_mold (1 mm), 5 %"
+        );
+        assert_eq!(
+            plain(
+                "the next best is sensor_bias channel V2 (correlation -0.94), tone_pickup mass m"
+            ),
+            "the next best is sensor bias in channel V2 (correlation −0.94), tone pickup on mass m"
+        );
+        assert_eq!(
+            plain("log evidence falls by 12343.9 without it"),
+            "without it these records are harder to explain (log evidence lower by 12340)"
+        );
     }
 
     #[test]

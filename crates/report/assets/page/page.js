@@ -39,7 +39,7 @@
   const SUPERSCRIPT = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074",
     5: "\u2075", 6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
   function written(value) {
-    if (value == null || !isFinite(value)) return "\u2013";
+    if (value == null || !isFinite(value)) return "";
     const size = Math.abs(value);
     if (size !== 0 && (size < 1e-4 || size >= 1e6)) {
       const [digits, power] = value.toExponential(3).split("e");
@@ -48,9 +48,10 @@
     }
     return String(Number(value.toPrecision(5))).replace("-", MINUS);
   }
-  function tick(value) {
+  // With a power of ten throughout where the axis has one, as in the drawings.
+  function tick(value, powers) {
     const power = Math.log10(Math.abs(value));
-    if (value !== 0 && (power < -3 || power >= 6)) {
+    if (value !== 0 && (powers || power < -3 || power >= 6)) {
       const whole = Math.floor(power + 1e-9);
       const digit = Math.round(value / Math.pow(10, whole));
       const raised = String(whole).split("").map((c) => SUPERSCRIPT[c]).join("");
@@ -146,7 +147,11 @@
       stroke: () => css("--soft"),
       grid: { stroke: () => css("--grid"), width: 1 },
       ticks: { stroke: () => css("--grid"), width: 1, size: 5 },
-      values: (u, splits) => splits.map((v) => (v == null ? "" : tick(offAxis(v, log)))),
+      values: (u, splits) => {
+        const { min: low, max: high } = u.scales[side];
+        const powers = log && (low < -3.01 || high > 4.01);
+        return splits.map((v) => (v == null ? "" : tick(offAxis(v, log), powers)));
+      },
     };
   }
 

@@ -147,6 +147,19 @@ impl Axis {
         axis
     }
 
+    /// What the axis shows, with the power of ten that its numbers leave out.
+    pub(crate) fn name(&self, label: &str) -> String {
+        if label.is_empty() || self.exponent == 0 {
+            return label.to_owned();
+        }
+        let power = format!("10{}", superscript(self.exponent));
+        // A pure number is counted in that power.
+        match label.strip_suffix("[1]") {
+            Some(of) => format!("{of}[{power}]"),
+            None => format!("{label} (×{power})"),
+        }
+    }
+
     /// Position of a value that [`shows`], 0 at the lower end and 1 at the upper.
     pub(crate) fn position(&self, value: f64) -> f64 {
         let v = if self.log { value.log10() } else { value };
@@ -241,6 +254,9 @@ mod tests {
     fn verify_small_and_large_values_share_a_power_of_a_thousand() {
         let axis = Axis::exactly([0.0, 4.2e-5], false, 4);
         assert_eq!((axis.exponent, labels(&axis)), (-6, vec!["0", "20", "40"]));
+        assert_eq!(axis.name("gap [1]"), "gap [10⁻⁶]");
+        assert_eq!(axis.name("y [kN]"), "y [kN] (×10⁻⁶)");
+        assert_eq!(axis.name(""), "");
         let axis = Axis::exactly([0.0, 3e6], false, 3);
         assert_eq!(
             (axis.exponent, labels(&axis)),

@@ -230,6 +230,7 @@ impl BarChart {
         let scale = if self.percent { 100.0 } else { 1.0 };
         let count = ((frame.right - frame.left) / 60.0) as usize;
         let axis = Axis::exactly([0.0, frame.full * scale], false, count.clamp(2, 8));
+        let name = axis.name(&self.axis_label);
         for (position, label) in &axis.ticks {
             let x = frame.left + position * (frame.right - frame.left);
             // Not through the labels.
@@ -242,9 +243,9 @@ impl BarChart {
             canvas.text(label, (x, foot + 10.0), Font::TICK, Anchor::Middle)?;
         }
         let width = f64::from(self.width_px);
-        let half = 0.5 * Font::LABEL.width_px(&self.axis_label).min(width - 8.0);
+        let half = 0.5 * Font::LABEL.width_px(&name).min(width - 8.0);
         let middle = (0.5 * (frame.left + frame.right)).min(width - half - 4.0);
-        let text = Font::LABEL.fit(&self.axis_label, width - 8.0);
+        let text = Font::LABEL.fit(&name, width - 8.0);
         canvas.text(
             &text,
             (middle.max(half + 4.0), foot + 29.0),

@@ -273,5 +273,66 @@ pub(crate) fn draw_svg(
         .replace(" opacity=\"1\"", "")
         .replace("\n</text>", "</text>")
         .replace(" \"/>", "\"/>");
-    Ok(head + body.as_str())
+    Ok(head + &gathered_dots(&body))
+}
+
+/// Dots of one size and colour that follow one another as a single path of points with round ends:
+/// a fifth of the text.
+fn gathered_dots(body: &str) -> String {
+    let mut out = String::with_capacity(body.len());
+    let mut open: Option<(&str, &str)> = None;
+    for line in body.lines() {
+        let dot = attributes_of_dot(line);
+        let look = dot.map(|(_, _, r, fill)| (r, fill));
+        if open.is_some() && open != look {
+            out.push_str("\"/>\n");
+            open = None;
+        }
+        match dot {
+            None => {
+                out.push_str(line);
+                out.push('\n');
+            }
+            Some((x, y, r, fill)) => {
+                if open.is_none() {
+                    let width = 2 * r.parse::<u32>().unwrap_or(0);
+                    out.push_str(&format!(
+                        "<path fill=\"none\" stroke=\"{fill}\" stroke-width=\"{width}\" d=\""
+                    ));
+                    open = look;
+                }
+                out.push_str(&format!("M{x} {y}h0"));
+            }
+        }
+    }
+    if open.is_some() {
+        out.push_str("\"/>\n");
+    }
+    out.truncate(out.trim_end().len());
+    out
+}
+
+/// Centre, radius and colour of a line that is a filled circle of the backend.
+fn attributes_of_dot(line: &str) -> Option<(&str, &str, &str, &str)> {
+    let circle = line.strip_prefix("<circle ")?;
+    let value = |name: &str| {
+        let (_, after) = circle.split_once(&format!("{name}=\""))?;
+        after.split_once('"').map(|(value, _)| value)
+    };
+    Some((value("cx")?, value("cy")?, value("r")?, value("fill")?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_dots_of_one_look_become_one_path() {
+        let body = "<circle cx=\"1\" cy=\"2\" r=\"3\" fill=\"#A\"/>\n\
+                    <circle cx=\"4\" cy=\"5\" r=\"3\" fill=\"#A\"/>\n\
+                    <circle cx=\"6\" cy=\"7\" r=\"3\" fill=\"#B\"/>\n<rect/>";
+        let a = "<path fill=\"none\" stroke=\"#A\" stroke-width=\"6\" d=\"M1 2h0M4 5h0\"/>";
+        let b = "<path fill=\"none\" stroke=\"#B\" stroke-width=\"6\" d=\"M6 7h0\"/>";
+        assert_eq!(gathered_dots(body), format!("{a}\n{b}\n<rect/>"));
+    }
 }

@@ -1,6 +1,6 @@
 //! A line chart laid out and drawn.
 
-use super::axis::{self, Axis, superscript};
+use super::axis::{self, Axis};
 use super::canvas::{Anchor, Canvas, Drawn, Font, Pen};
 use super::decimate::{thin, thin_points};
 use super::legend::{Legend, ROW_PX};
@@ -159,17 +159,13 @@ impl<'c> Plot<'c> {
                 Anchor::End,
             )?;
         }
-        let with_power = |label: &str, exponent: i32| match (label.is_empty(), exponent) {
-            (true, _) | (_, 0) => label.to_owned(),
-            (_, e) => format!("{label} (×10{})", superscript(e)),
-        };
-        let x_label = with_power(&self.chart.x_label, self.x.exponent);
+        let x_label = self.x.name(&self.chart.x_label);
         if !x_label.is_empty() {
             let fitted = Font::LABEL.fit(&x_label, self.right - self.left);
             let at = (0.5 * (self.left + self.right), self.bottom + 32.0);
             canvas.text(&fitted, at, Font::LABEL, Anchor::Middle)?;
         }
-        let y_label = with_power(&self.chart.y_label, self.y.exponent);
+        let y_label = self.y.name(&self.chart.y_label);
         if !y_label.is_empty() {
             let fitted = Font::LABEL.fit(&y_label, self.bottom - self.top + 20.0);
             let at = (13.0, 0.5 * (self.top + self.bottom));

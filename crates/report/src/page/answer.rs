@@ -36,15 +36,13 @@ pub(super) fn first_screen(
 
 fn figures(html: &mut Html, diagnosis: &Diagnosis) {
     let gap = &diagnosis.gap;
-    let closed = match diagnosis.verdict.status {
-        Status::None => "–".to_owned(),
-        _ => percent(gap.closed),
-    };
-    let tiles = [
-        ("Gap of the model as given", ratio(gap.nominal)),
-        ("Gap of the final model", ratio(gap.corrected)),
-        ("Closed above the noise", closed),
-    ];
+    let mut tiles = vec![("Gap of the model as given", ratio(gap.nominal))];
+    if diagnosis.verdict.status == Status::None {
+        tiles.push(("Gap that the noise alone leaves", ratio(gap.noise_floor)));
+    } else {
+        tiles.push(("Gap of the final model", ratio(gap.corrected)));
+        tiles.push(("Closed above the noise", percent(gap.closed)));
+    }
     html.within("div", &[("class", "tiles")], |html| {
         for (name, figure) in tiles {
             html.within("div", &[("class", "tile")], |html| {
@@ -63,8 +61,9 @@ fn waterfall(diagnosis: &Diagnosis) -> Result<Picture, ReportError> {
         ("model as given", gap.nominal, Role::Nominal),
         ("re-estimated", gap.recalibrated, Role::Recalibrated),
     ];
-    // With no effect named the final model is the re-estimated one.
-    if named || ratio(gap.corrected) != ratio(gap.recalibrated) {
+    // With no effect named the final model is the re-estimated one, or the model as given.
+    let kept = diagnosis.verdict.status == Status::None;
+    if named || !kept && ratio(gap.corrected) != ratio(gap.recalibrated) {
         let label = if named {
             "with named effects"
         } else {
@@ -100,7 +99,7 @@ fn waterfall(diagnosis: &Diagnosis) -> Result<Picture, ReportError> {
     chart.full = Some(largest.fold(0.0, f64::max)).filter(|full| *full > 0.0);
     chart.percent = false;
     chart.limit = Some(gap.noise_floor);
-    chart.axis_label = "gap, rms of the discrepancy over spread of the signal [1]".to_owned();
+    chart.axis_label = "gap: rms of the discrepancy over spread of the signal [1]".to_owned();
     let note = "Hollow: what each step takes away. Dashed: what the noise of the sensors alone would leave.";
     Ok(Picture::bars("gap", chart)?.with_note(note))
 }
@@ -122,13 +121,16 @@ pub(super) fn motion(
     html.within("div", &[("class", "pair")], |html| {
         let whole = worst.motion(&format!("{name}: measured and predicted"), None)?;
         let hint = "Drag across a stretch to enlarge it, double-click to see all of it again.";
-        whole.with_note(hint).wide().show(html, files);
+        whole.with_hint(hint).wide().show(html, files);
         if zoom.is_some() {
             let title = format!("{name}: where the model as given is worst");
             worst.motion(&title, zoom)?.show(html, files);
         }
-        let title = format!("{name}: what each model leaves, a complete one only noise");
-        worst.left_over(&title)?.show(html, files);
+        let title = format!("{name}: what each model leaves unexplained");
+        worst
+            .left_over(&title)?
+            .with_note("A complete model leaves nothing but noise.")
+            .show(html, files);
         Ok::<(), ReportError>(())
     })?;
     further_records(html, files, pictures)

@@ -2,7 +2,7 @@
 
 use crate::markup::Html;
 
-const ENTRIES: [(&str, &str, &str); 7] = [
+const ENTRIES: [(&str, &str, &str); 8] = [
     (
         "Gap (nrmse)",
         "gap = rms(measured − predicted) / std(measured)",
@@ -32,6 +32,11 @@ const ENTRIES: [(&str, &str, &str); 7] = [
         "Probability",
         "",
         "That this effect and not a rival of the catalogue is part of the cause, given these records. It is not the chance of something outside the catalogue.",
+    ),
+    (
+        "Log evidence",
+        "",
+        "How well a set of effects explains the training records, less a price for every value that is fitted: the logarithm of how likely they are. 5 higher means odds of 150 to 1.",
     ),
     (
         "95 % interval",

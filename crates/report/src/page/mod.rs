@@ -6,10 +6,12 @@
 
 mod answer;
 mod computed;
+mod force;
 mod guide;
 mod picture;
 mod pictures;
 mod script;
+mod sense;
 mod stretch;
 mod style;
 mod tables;
@@ -17,7 +19,7 @@ mod values;
 mod whereabouts;
 mod which;
 
-use simgap_diagnose::{CheckSeries, Diagnosis};
+use simgap_diagnose::{CheckSeries, Diagnosis, PlaceMotion};
 use simgap_model::{Location, Model};
 
 use crate::chart::ChartError;
@@ -51,6 +53,8 @@ pub struct ReportInput<'a> {
     pub diagnosis: &'a Diagnosis,
     /// The check records with their predictions.
     pub series: &'a [CheckSeries],
+    /// The motion across the members along the check records, for the force that the model lacks.
+    pub motions: &'a [PlaceMotion],
     /// The model as given, to set the corrected one beside it.
     pub nominal: Option<&'a Model>,
     /// The corrected model.
@@ -170,6 +174,7 @@ pub fn report_html(
     let input = ReportInput {
         diagnosis,
         series,
+        motions: &[],
         nominal: None,
         corrected: None,
         context,
@@ -211,10 +216,11 @@ fn body(
     html.within("main", &[], |html| {
         answer::first_screen(html, files, diagnosis, &unit_at)?;
         answer::motion(html, files, pictures)?;
+        tables::channels(html, diagnosis);
         whereabouts::whereabouts(html, files, diagnosis, pictures)?;
+        force::missing(html, files, input)?;
         which::which(html, files, diagnosis)?;
         values::values(html, input, &unit_at);
-        tables::channels(html, diagnosis);
         tables::quality(html, diagnosis);
         tables::next_experiment(html, diagnosis);
         computed::computed(html, input);

@@ -24,6 +24,8 @@ pub(super) struct Picture {
     slug: &'static str,
     title: String,
     note: String,
+    /// The note is about the script, and not for paper.
+    hint: bool,
     svg: String,
     size: ChartSize,
     csv: String,
@@ -49,6 +51,7 @@ impl Picture {
             live: budget.and_then(|budget| live_json(&chart, budget, home)),
             title,
             note: String::new(),
+            hint: false,
             wide: false,
         })
     }
@@ -65,6 +68,7 @@ impl Picture {
             live: None,
             title,
             note: String::new(),
+            hint: false,
             wide: false,
         })
     }
@@ -73,6 +77,12 @@ impl Picture {
     pub(super) fn with_note(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
+    }
+
+    /// With words below it on how to use it on a screen.
+    pub(super) fn with_hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = true;
+        self.with_note(hint)
     }
 
     /// Over the whole width where the script draws it.
@@ -93,7 +103,8 @@ impl Picture {
                 html.raw("</script>\n");
             }
             if !self.note.is_empty() {
-                html.element("p", &[("class", "note")], &self.note);
+                let class = if self.hint { "note tools" } else { "note" };
+                html.element("p", &[("class", class)], &self.note);
             }
         });
         files.push(PictureFile {

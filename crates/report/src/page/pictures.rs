@@ -17,7 +17,7 @@ const STRETCHES: usize = 60;
 /// A spectrum of fewer samples says nothing.
 const FEWEST_SAMPLES: usize = 64;
 /// Averages wanted before the resolution is raised.
-const AVERAGES: usize = 10;
+const AVERAGES: usize = 4;
 const LONGEST_SEGMENT: usize = 8192;
 /// Bands shaded in a spectrum: the strongest, and none below this share.
 const SHADED_BANDS: usize = 4;
@@ -272,16 +272,14 @@ impl Pictured<'_> {
 
     /// The strongest first, since their labels have precedence.
     fn bands(&self) -> Vec<Span> {
-        let mut strongest: Vec<_> = self.diagnosis.r#where.bands.iter().collect();
-        strongest.retain(|b| b.share >= LEAST_BAND);
-        strongest.sort_by(|a, b| b.share.total_cmp(&a.share));
-        strongest.truncate(SHADED_BANDS);
+        let strongest = crate::bands::told(&self.diagnosis.r#where.bands).into_iter();
         strongest
-            .into_iter()
+            .filter(|b| b.share >= LEAST_BAND)
+            .take(SHADED_BANDS)
             .map(|b| Span {
                 from: b.from_hz,
                 to: b.to_hz,
-                label: b.label.clone(),
+                label: b.label,
             })
             .collect()
     }

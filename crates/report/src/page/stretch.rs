@@ -3,7 +3,7 @@
 /// A stretch shows about this many swings.
 const SWINGS: f64 = 8.0;
 /// Shortest and longest stretch, relative to the record.
-const SHORTEST: f64 = 0.03;
+const SHORTEST: f64 = 0.005;
 const LONGEST: f64 = 0.3;
 /// A record with fewer samples is shown whole.
 const FEW_SAMPLES: usize = 200;

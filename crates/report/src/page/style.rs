@@ -39,7 +39,11 @@ figure.live>svg{display:none}
 .tools button{font:13px/1.2 inherit;font-family:inherit;color:var(--ink);background:var(--card);border:1px solid var(--line);border-radius:6px;padding:5px 10px;min-width:34px;cursor:pointer}
 .tools button:hover{border-color:var(--accent)}
 .u-legend{text-align:left!important;font-size:13px;margin:0!important}
+.uplot .u-legend tbody{display:flex;flex-wrap:wrap}
 .uplot .u-legend.u-inline .u-series{padding:0 6px 0 0}
+.uplot .u-legend.u-inline.u-live th::after{content:none}
+.uplot .u-legend .u-series:first-child{order:9}
+.uplot .u-legend .u-series:first-child:has(.u-value:empty){visibility:hidden}
 .uplot .u-legend .u-marker{width:1.3em!important;height:0!important;border-top-width:3px!important}
 .u-legend .u-value{font-variant-numeric:tabular-nums}
 .uplot .u-select{background:var(--accent);opacity:.18}
@@ -63,7 +67,7 @@ code,pre{font:14px/1.45 ui-monospace,SFMono-Regular,Menlo,Consolas,monospace}
 pre{background:var(--card);border:1px solid var(--line);border-radius:6px;padding:8px 12px;overflow-x:auto;white-space:pre-wrap;overflow-wrap:anywhere}
 li,h1,h3,p,dd,.tile,figcaption,td{overflow-wrap:anywhere}
 @media(max-width:720px){main,header{padding-left:15px;padding-right:15px}h1{font-size:24px}.tiles{gap:8px}.tile{padding:8px 10px}.tile .figure{font-size:20px}.scroll table,.scroll tbody,.scroll tr,.scroll td{display:block}.scroll thead{display:none}.scroll tr{border-bottom:1px solid var(--line);padding:6px 0}.scroll td,.scroll td.n{border:0;padding:1px 0;text-align:left;white-space:normal}.scroll td:first-child{font-weight:600}.scroll td[data-name]::before{content:attr(data-name) \": \";color:var(--soft);font-weight:400}}
-@media print{body{font-size:10.5pt}h2,h3,figcaption{break-after:avoid}figure,.tile,.box,tr,.facts{break-inside:avoid}main,header{max-width:none;padding-left:0;padding-right:0}.tile,.box,pre{background:none}.plot,.tools,summary{display:none!important}figure.live>svg{display:block}figure.live.wide{grid-column:auto}.pair{grid-template-columns:1fr 1fr;gap:16px 20px}a{color:inherit}}
+@media print{body{font-size:10.5pt}h2,h3,figcaption{break-after:avoid}figure,.tile,.box,tr,.facts{break-inside:avoid}main,header{max-width:none;padding-left:0;padding-right:0}.tile,.box,pre{background:none}.plot,.tools,summary{display:none!important}figure.live>svg{display:block}figure.live.wide{grid-column:auto}.pair{grid-template-columns:1fr 1fr;gap:16px 20px}.pair.first{grid-template-columns:1fr}.first figure{max-width:480px}.tiles{max-width:600px}p,li{orphans:3;widows:3}a{color:inherit}}
 ";
 
 const DARK: &str = "\

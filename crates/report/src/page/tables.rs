@@ -4,7 +4,7 @@ use simgap_diagnose::Diagnosis;
 
 use crate::markup::Html;
 use crate::number::ratio;
-use crate::wording::sentence;
+use crate::wording::{plain, sentence};
 
 /// A table with its head; columns from `numbers_from` on are numbers.
 pub(super) fn table(
@@ -100,7 +100,7 @@ pub(super) fn next_experiment(html: &mut Html, diagnosis: &Diagnosis) {
     html.element("h2", &[], "Next experiment");
     match &diagnosis.next_experiment {
         Some(experiment) => html.within("div", &[("class", "box")], |html| {
-            html.element("p", &[], &sentence(experiment));
+            html.element("p", &[], &sentence(&plain(experiment)));
         }),
         None => html.element(
             "p",

@@ -1,6 +1,6 @@
 //! Where the gap lies: over frequency, time, channels, places and states of motion.
 
-use simgap_diagnose::Diagnosis;
+use simgap_diagnose::{Diagnosis, TimeShare};
 
 use super::ReportError;
 use super::picture::{Picture, PictureFile};
@@ -76,8 +76,13 @@ fn groups(diagnosis: &Diagnosis) -> [Group; 6] {
         axis,
         bars,
     };
-    let times = &at.times;
-    let several = times.iter().any(|t| t.record != times[0].record);
+    // Of one record the strip above tells more.
+    let times: Vec<Bar> = if at.records.len() > 1 {
+        let label = |t: &TimeShare| format!("{}, {}", t.record, range(t.from_s, t.to_s, "s"));
+        at.times.iter().map(|t| bar(label(t), t.share)).collect()
+    } else {
+        vec![]
+    };
     [
         group(
             "share-places",
@@ -104,9 +109,9 @@ fn groups(diagnosis: &Diagnosis) -> [Group; 6] {
             "Share of each frequency band",
             "",
             SQUARED,
-            at.bands
+            crate::bands::told(&at.bands)
                 .iter()
-                .map(|b| bar(band_label(b.from_hz, b.to_hz, &b.label), b.share))
+                .map(|b| bar(b.name(), b.share))
                 .collect(),
         ),
         group(
@@ -127,15 +132,7 @@ fn groups(diagnosis: &Diagnosis) -> [Group; 6] {
             "Share of the worst stretches of time",
             "Of all records together, which are cut into twenty stretches each.",
             SQUARED,
-            times
-                .iter()
-                .map(|t| {
-                    bar(
-                        time_label(several.then_some(&t.record), t.from_s, t.to_s),
-                        t.share,
-                    )
-                })
-                .collect(),
+            times,
         ),
         group(
             "share-records",
@@ -165,18 +162,4 @@ fn largest(bars: Vec<Bar>) -> (Vec<Bar>, usize) {
         order.into_iter().map(|i| bars[i].clone()).collect(),
         left_out,
     )
-}
-
-fn band_label(from_hz: f64, to_hz: f64, label: &str) -> String {
-    let range = range(from_hz, to_hz, "Hz");
-    if label.is_empty() {
-        range
-    } else {
-        format!("{label} ({range})")
-    }
-}
-
-fn time_label(record: Option<&String>, from_s: f64, to_s: f64) -> String {
-    let range = range(from_s, to_s, "s");
-    record.map_or(range.clone(), |record| format!("{record}, {range}"))
 }

@@ -10,14 +10,16 @@ use crate::chart::{Bar, BarChart, Role};
 use crate::markup::Html;
 use crate::number::{percent, ratio};
 use crate::unit::estimate;
-use crate::wording::{SURE, effect_at, kind, place, sentence};
+use crate::wording::{SURE, effect_at, kind, place, plain, sentence};
 
 /// Candidates of the picture.
 const RANKED: usize = 8;
 /// Candidates of the table shown at once; the rest is folded away.
 const FIRST_CANDIDATES: usize = 6;
 /// A corrected gap this many times the noise floor leaves something to explain.
-const STANDS_OUT: f64 = 1.2;
+const STANDS_OUT: f64 = 1.5;
+/// A law of any shape that explains this share of what is left speaks against the law named.
+const ANOTHER_LAW: f64 = 0.3;
 
 /// The whole section.
 pub(super) fn which(
@@ -50,6 +52,7 @@ pub(super) fn which(
                 for_and_against(html, diagnosis, effect);
             }
             ambiguity(html, diagnosis);
+            left_over(html, diagnosis);
         });
         Ok::<(), ReportError>(())
     })?;
@@ -73,6 +76,7 @@ fn ranking(
         .iter()
         .filter(|c| !is_named(diagnosis, c));
     bars.extend(others.map(|c| Bar::share(short(&c.kind, &c.at), c.probability, Role::Nominal)));
+    bars.sort_by(|a, b| b.value.total_cmp(&a.value));
     bars.truncate(RANKED.max(named.len()));
     if bars.is_empty() || named.is_empty() {
         return Ok(());
@@ -111,16 +115,30 @@ fn for_and_against(html: &mut Html, diagnosis: &Diagnosis, effect: &NamedEffect)
         percent(effect.probability)
     );
     html.element("h3", &[], &head);
-    if !effect.evidence.is_empty() {
+    let (evidence, doubt) = divided(effect);
+    if !evidence.is_empty() {
         html.element("p", &[("class", "sub")], "For");
-        list(html, &effect.evidence);
+        let evidence: Vec<String> = evidence.iter().map(|line| plain(line)).collect();
+        list(html, &evidence);
     }
     html.element("p", &[("class", "sub")], "Against");
-    let against = against(diagnosis, effect);
+    let doubt = doubt.map(|line| plain(line));
+    let against: Vec<String> = doubt
+        .into_iter()
+        .chain(against(diagnosis, effect))
+        .collect();
     if against.is_empty() {
         html.element("p", &[], "Nothing in these records.");
     } else {
         list(html, &against);
+    }
+}
+
+/// What speaks for an effect, and what says that it may only stand in for another law.
+fn divided(effect: &NamedEffect) -> (&[String], Option<&String>) {
+    match effect.evidence.split_last() {
+        Some((doubt, rest)) if effect.stand_in => (rest, Some(doubt)),
+        _ => (&effect.evidence, None),
     }
 }
 
@@ -155,12 +173,57 @@ fn against(diagnosis: &Diagnosis, effect: &NamedEffect) -> Vec<String> {
     let gap = &diagnosis.gap;
     if gap.corrected > STANDS_OUT * gap.noise_floor {
         out.push(format!(
-            "with all that is named the gap is still {}, {} times the noise: something smaller is left",
+            "with all that is named the gap is still {}, {} times the noise of the sensors: something smaller is left",
             ratio(gap.corrected),
-            crate::number::significant(gap.corrected / gap.noise_floor, 2)
+            times(gap.corrected / gap.noise_floor)
         ));
     }
     out
+}
+
+/// What the best set of effects leaves of the training records, and whether a law of another shape
+/// would explain it.
+fn left_over(html: &mut Html, diagnosis: &Diagnosis) {
+    if diagnosis.verdict.status == Status::None {
+        return;
+    }
+    let left = &diagnosis.remainder;
+    html.element("h3", &[], "What is left in the training records");
+    let best = match diagnosis.verdict.status {
+        Status::Unknown => "The best that the catalogue offers",
+        _ => "The answer",
+    };
+    let mut text = if left.over_noise > STANDS_OUT {
+        format!("{best} leaves {} times the noise.", times(left.over_noise))
+    } else {
+        format!("{best} leaves no more than noise.")
+    };
+    if let Some(at) = left.law_at.as_ref()
+        && left.over_noise > STANDS_OUT
+        && left.law_share > ANOTHER_LAW
+    {
+        let named = diagnosis.verdict.effects.iter().any(|e| &e.at == at);
+        let so = if named {
+            "so the law there may be another than the one named"
+        } else {
+            "so something acts there that is not named"
+        };
+        text.push_str(&format!(
+            " A law of free shape {} would explain {} of that, {so}.",
+            place(at),
+            percent(left.law_share)
+        ));
+    }
+    html.element("p", &[], &text);
+}
+
+/// A large ratio: "7.5", "more than 100".
+fn times(ratio: f64) -> String {
+    if ratio < 100.0 {
+        crate::number::significant(ratio, 2)
+    } else {
+        "more than 100".to_owned()
+    }
 }
 
 /// What the data cannot tell apart.
@@ -184,7 +247,7 @@ fn ambiguity(html: &mut Html, diagnosis: &Diagnosis) {
         let rivals: Vec<String> = effect
             .indistinguishable
             .iter()
-            .map(|r| format!("{} {}: {}", kind(&r.kind), place(&r.at), r.because))
+            .map(|r| format!("{} {}: {}", kind(&r.kind), place(&r.at), plain(&r.because)))
             .collect();
         list(html, &rivals);
     }
@@ -196,28 +259,32 @@ fn candidates(html: &mut Html, diagnosis: &Diagnosis) {
         return;
     }
     html.element("h3", &[], "Each effect alone");
-    let how = "Added to the re-estimated model, one at a time. The gap is on the check records, which nothing was fitted to. Named effects are bold.";
-    html.element("p", &[], how);
+    let any = !diagnosis.verdict.effects.is_empty();
+    let how = "Added to the re-estimated model, one at a time. The gap is on the check records, which nothing was fitted to.";
+    let bold = if any { " Named effects are bold." } else { "" };
+    html.element("p", &[], &format!("{how}{bold}"));
+    let head = ["Effect", "Where", "Gap (nrmse)", "Probability"];
+    // Probabilities are those of an answer.
+    let columns = if any { 4 } else { 3 };
     let row = |c: &CandidateResult| {
         let text = sentence(&kind(&c.kind)).trim_end_matches('.').to_owned();
-        (
-            is_named(diagnosis, c),
-            vec![
-                text,
-                place(&c.at),
-                ratio(c.held_back_gap),
-                percent(c.probability),
-            ],
-        )
+        let gap = ratio(c.held_back_gap);
+        let mut cells = vec![text, place(&c.at), gap, percent(c.probability)];
+        cells.truncate(columns);
+        (is_named(diagnosis, c), cells)
     };
     let rows: Vec<(bool, Vec<String>)> = diagnosis.candidates.iter().map(row).collect();
-    let head = ["Effect", "Where", "Gap", "Probability"];
-    let (first, rest) = rows.split_at(rows.len().min(FIRST_CANDIDATES));
-    table(html, &head, 2, first);
+    let head = &head[..columns];
+    let mut place_in_list = 0;
+    let (first, rest): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(named, _)| {
+        place_in_list += 1;
+        *named || place_in_list <= FIRST_CANDIDATES
+    });
+    table(html, head, 2, &first);
     if !rest.is_empty() {
         html.within("details", &[], |html| {
             html.element("summary", &[], &format!("{} more", rest.len()));
-            table(html, &head, 2, rest);
+            table(html, head, 2, &rest);
         });
     }
 }
