@@ -6,6 +6,7 @@ use crate::number::{fewer_digits, range};
 
 /// A band whose ends are further apart than this factor has no frequency of its own.
 const SPREAD: f64 = 10.0;
+const SPREAD_LABEL: &str = "spread over";
 
 /// One band, ready to be told.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,9 +24,16 @@ impl Band {
         let range = range(self.from_hz, self.to_hz, "Hz");
         if self.label.is_empty() {
             range
+        } else if self.is_spread() {
+            format!("{} {range}", self.label)
         } else {
             format!("{} ({range})", self.label)
         }
+    }
+
+    /// Whether it has no frequency of its own.
+    pub(crate) fn is_spread(&self) -> bool {
+        self.label == SPREAD_LABEL
     }
 }
 
@@ -52,7 +60,7 @@ pub(crate) fn told(bands: &[BandShare]) -> Vec<Band> {
 fn band(band: &BandShare) -> Band {
     let spread = band.from_hz > 0.0 && band.to_hz > SPREAD * band.from_hz;
     let label = if spread && band.label.starts_with("around ") {
-        "spread".to_owned()
+        SPREAD_LABEL.to_owned()
     } else {
         fewer_digits(&band.label)
     };
@@ -101,6 +109,6 @@ mod tests {
     #[test]
     fn verify_a_band_over_all_frequencies_has_no_frequency() {
         let found = told(&[share(0.1, 49.9, "around 23.4000 Hz", 1.0)]);
-        assert_eq!(found[0].name(), "spread (0.1–49.9\u{a0}Hz)");
+        assert_eq!(found[0].name(), "spread over 0.1–49.9\u{a0}Hz");
     }
 }

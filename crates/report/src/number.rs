@@ -42,7 +42,8 @@ pub(crate) fn trimmed(value: f64, digits: usize) -> String {
     }
 }
 
-/// The decimal numbers of a text to four digits: "68.3301 Hz" is "68.33 Hz", "2.0000 Hz" is "2 Hz".
+/// The decimal numbers of a text that have more digits to four: "68.3301 Hz" is "68.33 Hz", "2.0000 Hz"
+/// is "2 Hz".
 pub(crate) fn fewer_digits(text: &str) -> String {
     let part = |c: char| c.is_alphanumeric() || matches!(c, '.' | '_');
     let mut out = String::with_capacity(text.len());
@@ -52,9 +53,10 @@ pub(crate) fn fewer_digits(text: &str) -> String {
         let (word, after) = from.split_at(from.find(|c| !part(c)).unwrap_or(from.len()));
         out.push_str(before);
         let point = word.trim_end_matches('.');
-        let digits = point.chars().all(|c| c.is_ascii_digit() || c == '.');
+        let digits = point.chars().filter(char::is_ascii_digit).count();
+        let number = digits + 1 == point.chars().count() && point.contains('.');
         match point.parse::<f64>() {
-            Ok(value) if digits && point.contains('.') => {
+            Ok(value) if number && digits > 4 => {
                 out.push_str(&trimmed(value, 4));
                 out.push_str(&word[point.len()..]);
             }
@@ -154,8 +156,8 @@ mod tests {
         assert_eq!(change(2.345), "+230\u{a0}%");
         assert_eq!(ratio(1.1e-9), "< 10⁻⁵");
         assert_eq!(
-            fewer_digits("near 68.3301 Hz, 2.0000 Hz of train-1.csv, v1.2.3 and 0.5."),
-            "near 68.33 Hz, 2 Hz of train-1.csv, v1.2.3 and 0.5."
+            fewer_digits("near 68.3301 Hz, 2.0000 Hz of train-1.csv, v1.2.3 and 1.00."),
+            "near 68.33 Hz, 2 Hz of train-1.csv, v1.2.3 and 1.00."
         );
     }
 

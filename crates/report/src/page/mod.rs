@@ -107,7 +107,7 @@ pub enum ReportError {
 /// [`ReportError::LengthMismatch`] if a channel of `series` has not one value for each time stamp.
 pub fn report(input: &ReportInput<'_>) -> Result<Report, ReportError> {
     check_lengths(input.series)?;
-    let shown = pictured(input.diagnosis, input.series);
+    let shown = pictured(input);
     let mut html = Html::default();
     let mut pictures = Vec::new();
     html.raw("<!DOCTYPE html>\n");

@@ -1,6 +1,6 @@
 //! The charts of a page, drawn from the check records.
 
-use simgap_diagnose::{ChannelSeries, CheckSeries, Diagnosis};
+use simgap_diagnose::{ChannelSeries, Diagnosis};
 use simgap_signal::welch::{WelchOptions, welch};
 
 use super::picture::{Picture, SIZE};
@@ -29,6 +29,8 @@ pub(crate) struct Pictured<'a> {
     pub(crate) time_s: &'a [f64],
     pub(crate) channel: &'a ChannelSeries,
     diagnosis: &'a Diagnosis,
+    /// Whether a gain of its own brings the channel to the unit it is shown in.
+    has_gain: bool,
     /// rms of the nominal discrepancy over the standard deviation of the measurement.
     pub(crate) nominal_gap: f64,
     /// First and one-past-last sample of the stretch where the nominal model is worst.
@@ -36,18 +38,23 @@ pub(crate) struct Pictured<'a> {
 }
 
 /// Every channel of every check record, the worst predicted first.
-pub(crate) fn pictured<'a>(
-    diagnosis: &'a Diagnosis,
-    series: &'a [CheckSeries],
-) -> Vec<Pictured<'a>> {
+pub(crate) fn pictured<'a>(input: &super::ReportInput<'a>) -> Vec<Pictured<'a>> {
+    let (diagnosis, series) = (input.diagnosis, input.series);
+    let outputs = input.nominal.map_or(&[][..], |model| &model.outputs);
+    let gain = |channel: &str| {
+        outputs
+            .iter()
+            .any(|o| o.channel == channel && o.gain.is_some())
+    };
     let mut all: Vec<Pictured<'_>> = series
         .iter()
         .flat_map(|record| {
-            record.channels.iter().map(move |channel| Pictured {
+            record.channels.iter().map(|channel| Pictured {
                 record: &record.record,
                 time_s: &record.time_s,
                 channel,
                 diagnosis,
+                has_gain: gain(&channel.channel),
                 nominal_gap: relative_gap(&channel.measured, &channel.nominal),
                 worst: telling_stretch(
                     &channel.measured,
@@ -138,7 +145,9 @@ impl Pictured<'_> {
             ("model as given", Role::Nominal, &c.nominal),
             (self.corrected_name(), Role::Corrected, &c.corrected),
         ];
-        let mut chart = LineChart::new(title, "time [s]", format!("{} [{unit}]", c.channel));
+        let times = if self.has_gain { " × gain" } else { "" };
+        let y_label = format!("{}{times} [{unit}]", c.channel);
+        let mut chart = LineChart::new(title, "time [s]", y_label);
         for (name, role, values) in lines {
             let values = &values[shown.clone()];
             chart.series.push(scaled(name, role, t, values, factor));
@@ -271,10 +280,10 @@ impl Pictured<'_> {
     }
 
     /// The strongest first, since their labels have precedence.
-    fn bands(&self) -> Vec<Span> {
+    pub(crate) fn bands(&self) -> Vec<Span> {
         let strongest = crate::bands::told(&self.diagnosis.r#where.bands).into_iter();
         strongest
-            .filter(|b| b.share >= LEAST_BAND)
+            .filter(|b| b.share >= LEAST_BAND && !b.is_spread())
             .take(SHADED_BANDS)
             .map(|b| Span {
                 from: b.from_hz,

@@ -1,6 +1,6 @@
 //! Tables and lists, and the short sections made of them.
 
-use simgap_diagnose::Diagnosis;
+use simgap_diagnose::{Diagnosis, Status};
 
 use crate::markup::Html;
 use crate::number::ratio;
@@ -74,13 +74,11 @@ pub(super) fn channels(html: &mut Html, diagnosis: &Diagnosis) {
             )
         })
         .collect();
-    let head = [
-        "Channel",
-        "As given",
-        "Re-estimated",
-        "Corrected",
-        "Noise floor",
-    ];
+    let last = match diagnosis.verdict.status {
+        Status::Effect => "Corrected",
+        Status::None | Status::Parameters | Status::Unknown => "Final model",
+    };
+    let head = ["Channel", "As given", "Re-estimated", last, "Noise floor"];
     table(html, &head, 1, &rows);
 }
 

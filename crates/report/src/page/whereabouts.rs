@@ -1,6 +1,6 @@
 //! Where the gap lies: over frequency, time, channels, places and states of motion.
 
-use simgap_diagnose::{Diagnosis, TimeShare};
+use simgap_diagnose::{Diagnosis, Status, TimeShare};
 
 use super::ReportError;
 use super::picture::{Picture, PictureFile};
@@ -29,6 +29,11 @@ pub(super) fn whereabouts(
     pictures: &[Pictured<'_>],
 ) -> Result<(), ReportError> {
     html.element("h2", &[], "Where the gap of the model as given lies");
+    if diagnosis.verdict.status == Status::None {
+        let noise =
+            "The gap is noise, so this shows where the noise lies, not what the model lacks.";
+        html.element("p", &[], noise);
+    }
     let groups = groups(diagnosis);
     if groups.iter().all(|g| g.bars.is_empty()) {
         html.element("p", &[], "The discrepancy was not broken down.");
@@ -37,16 +42,23 @@ pub(super) fn whereabouts(
         if let Some(worst) = pictures.first() {
             let name = worst.name();
             match worst.spectrum(&format!("{name}: spectrum of the discrepancy"))? {
-                Some(picture) => picture
-                    .with_note("Shaded: the bands that hold most of it. A complete model leaves a level line.")
-                    .show(html, files),
+                Some(picture) => {
+                    let shaded = match worst.bands().len() {
+                        0 => "",
+                        _ => "Shaded: the bands that hold most of it. ",
+                    };
+                    let note = format!("{shaded}A complete model leaves a level line.");
+                    picture.with_note(note).show(html, files);
+                }
                 None => html.element(
                     "p",
                     &[("class", "soft")],
                     "The record is too short or too broken for a spectrum.",
                 ),
             }
-            if let Some(strip) = worst.strip(&format!("{name}: size of the discrepancy over time"))? {
+            if let Some(strip) =
+                worst.strip(&format!("{name}: size of the discrepancy over time"))?
+            {
                 strip.show(html, files);
             }
         }
@@ -59,7 +71,9 @@ pub(super) fn whereabouts(
                 n => format!(" {n} smaller ones are not shown."),
             };
             let note = (group.note.to_owned() + &more).trim().to_owned();
-            Picture::bars(group.slug, chart)?.with_note(note).show(html, files);
+            Picture::bars(group.slug, chart)?
+                .with_note(note)
+                .show(html, files);
         }
         Ok(())
     })
