@@ -17,6 +17,8 @@ const TIMES: [&str; 4] = ["t", "time", "tout", "zeit"];
 pub(crate) struct Array {
     /// `log.Weg` for a field.
     pub(crate) path: String,
+    /// Empty if the file has none.
+    pub(crate) unit: String,
     pub(crate) rows: usize,
     pub(crate) columns: usize,
     pub(crate) values: Vec<f64>,
@@ -73,6 +75,7 @@ fn sampled(arrays: &[Array]) -> Option<(String, f64)> {
 fn columns_of(array: Array, columns: &mut Vec<RawColumn>) {
     let Array {
         path,
+        unit,
         rows,
         columns: across,
         values,
@@ -83,7 +86,7 @@ fn columns_of(array: Array, columns: &mut Vec<RawColumn>) {
     let mut push = |name: String, values: Vec<f64>| {
         columns.push(RawColumn {
             name,
-            unit: String::new(),
+            unit: unit.clone(),
             values,
         });
     };

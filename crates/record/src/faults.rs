@@ -204,6 +204,16 @@ pub enum FormatFault {
         /// What to do instead.
         instead: &'static str,
     },
+    /// A part of a file that the reader of its format gives up on.
+    #[error(
+        "{what} cannot be read ({reason}); the file is cut off, damaged or of a form that is not known"
+    )]
+    Damaged {
+        /// The part.
+        what: String,
+        /// What the reader says.
+        reason: String,
+    },
     /// More than is read.
     #[error("more than {most} {what} found, which is the limit")]
     TooMuch {

@@ -29,11 +29,17 @@
 mod arrays;
 mod bytes;
 mod channel;
+#[cfg(feature = "parquet")]
+mod columnar;
 mod csv_header;
 mod csv_read;
 mod error;
 mod faults;
+#[cfg(any(feature = "matlab73", feature = "parquet"))]
+mod foreign;
 mod format;
+#[cfg(feature = "matlab73")]
+mod hdf5;
 mod logger;
 mod map;
 mod mat5;

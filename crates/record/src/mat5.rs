@@ -242,6 +242,7 @@ impl File {
         // Both are at most the number of bytes.
         self.arrays.push(Array {
             path,
+            unit: String::new(),
             rows: rows as usize,
             columns: columns as usize,
             values,

@@ -1,5 +1,6 @@
 //! One entry for files of every format.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::Path;
@@ -10,7 +11,8 @@ use crate::error::RecordError;
 use crate::faults::FormatFault;
 use crate::format::Format;
 use crate::logger::{self, starts_by_contract};
-use crate::raw::assemble;
+use crate::note::Note;
+use crate::raw::{Raw, assemble};
 use crate::select::{Mend, ReadOptions, Reading};
 use crate::{arrays, mat5, tdms, uff};
 
@@ -79,7 +81,7 @@ pub fn read_file(path: &Path, options: &ReadOptions) -> Result<Reading, RecordEr
         Mend::Foreign => !by_contract,
         Mend::Never => false,
     };
-    read_bytes(&label, name, &bytes, format, options, mend)
+    read_bytes(&label, name, bytes.into(), format, options, mend)
 }
 
 /// Reads a record from the bytes of a file, as [`read_file`]; `name` names the record, stands for
@@ -93,47 +95,51 @@ pub fn parse_file(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Rea
     let format = Format::of(head, Path::new(name));
     let by_contract = format == Format::Text && starts_by_contract(head);
     let mend = options.mend == Mend::Always || (options.mend == Mend::Foreign && !by_contract);
-    read_bytes(name, name.to_owned(), bytes, format, options, mend)
+    read_bytes(name, name.to_owned(), bytes.into(), format, options, mend)
 }
 
 fn read_bytes(
     label: &str,
     name: String,
-    bytes: &[u8],
+    bytes: Cow<'_, [u8]>,
     format: Format,
     options: &ReadOptions,
     mend: bool,
 ) -> Result<Reading, RecordError> {
+    if format == Format::Text {
+        return logger::read_table(label, name, &bytes, options, mend);
+    }
+    let mut notes = Vec::new();
+    let raw = raw_of(bytes, format, &mut notes).map_err(|fault| RecordError::Format {
+        file: label.to_owned(),
+        format,
+        fault,
+    })?;
+    assemble(label, name, raw, options, mend, notes)
+}
+
+fn raw_of(bytes: Cow<'_, [u8]>, format: Format, notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
     let unread = |instead| {
-        Err(RecordError::Format {
-            file: label.to_owned(),
-            format,
-            fault: FormatFault::Unsupported {
-                found: format!("a {format}"),
-                instead,
-            },
+        Err(FormatFault::Unsupported {
+            found: format!("a {format}"),
+            instead,
         })
     };
     match format {
-        Format::Text => logger::read_table(label, name, bytes, options, mend),
-        Format::Mat5 | Format::Uff | Format::Tdms => {
-            let mut notes = Vec::new();
-            let raw = match format {
-                Format::Mat5 => mat5::read(bytes).map(|arrays| arrays::to_raw(arrays, &mut notes)),
-                Format::Uff => uff::read(bytes, &mut notes),
-                _ => tdms::read(bytes, &mut notes),
-            };
-            let raw = raw.map_err(|fault| RecordError::Format {
-                file: label.to_owned(),
-                format,
-                fault,
-            })?;
-            assemble(label, name, raw, options, mend, notes)
+        Format::Mat5 => mat5::read(&bytes).map(|arrays| arrays::to_raw(arrays, notes)),
+        Format::Uff => uff::read(&bytes, notes),
+        Format::Tdms => tdms::read(&bytes, notes),
+        #[cfg(feature = "matlab73")]
+        Format::Hdf5 => {
+            crate::hdf5::read(bytes.into_owned()).map(|arrays| arrays::to_raw(arrays, notes))
         }
+        #[cfg(feature = "parquet")]
+        Format::Parquet => crate::columnar::read(bytes.into_owned(), notes),
+        #[cfg(not(feature = "matlab73"))]
+        Format::Hdf5 => unread("save it with -v7 in MATLAB, or as CSV"),
         Format::Zip => unread("save the table as CSV"),
         Format::Gzip => unread("unpack it first"),
-        Format::Hdf5 => unread("save it with -v7 in MATLAB, or as CSV"),
-        Format::Parquet | Format::Mdf => unread("save it as CSV, MAT (-v7), UFF or TDMS"),
+        _ => unread("save it as CSV, MAT (-v7), UFF or TDMS"),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::mend::{Columns, finish};
 use crate::note::Note;
 use crate::record::Origin;
 use crate::select::{Heading, ReadOptions, Reading, select, time_column, time_unit};
-use crate::{Channel, MAX_ROWS, MIN_ROWS, Unit};
+use crate::{Channel, MAX_ROWS, MIN_ROWS, Unit, UnitKind};
 
 /// A column that only looks like time is even to this share of its step.
 const EVEN: f64 = 1e-3;
@@ -99,10 +99,7 @@ fn headed(column: &RawColumn) -> Heading {
     if column.unit.is_empty() {
         return heading(&column.name);
     }
-    Heading {
-        name: column.name.clone(),
-        unit: column.unit.clone(),
-    }
+    Heading::new(&column.name, &column.unit)
 }
 
 struct TimeBase {
@@ -135,11 +132,11 @@ fn time_base(
     let column = match time_column(file, headings, &options.map)? {
         Some(column) => column,
         None => {
-            let column = raw.columns.iter().position(rises_evenly);
-            let column = column.ok_or_else(|| no_time(file, headings))?;
+            let (column, because) =
+                guessed_time(raw, headings).ok_or_else(|| no_time(file, headings))?;
             notes.push(Note::TimeChosen {
                 column: headings[column].name.clone(),
-                because: "no name tells the time base, and it rises evenly",
+                because,
             });
             column
         }
@@ -151,6 +148,17 @@ fn time_base(
         stamps: raw.columns[column].values.clone(),
         unit: time_unit(file, heading, &options.map, notes)?,
     })
+}
+
+/// The column that can only be the time base although no name says so, and why.
+fn guessed_time(raw: &Raw, headings: &[Heading]) -> Option<(usize, &'static str)> {
+    let in_time = |k: &usize| Unit::parse(&headings[*k].unit).kind() == UnitKind::Time;
+    let mut timed = (0..headings.len()).filter(in_time);
+    if let (Some(column), None) = (timed.next(), timed.next()) {
+        return Some((column, "it is the only one in a unit of time"));
+    }
+    let even = raw.columns.iter().position(rises_evenly)?;
+    Some((even, "no name tells the time base, and it rises evenly"))
 }
 
 fn no_time(file: &str, headings: &[Heading]) -> RecordError {

@@ -106,6 +106,17 @@ pub(crate) struct Heading {
     pub(crate) unit: String,
 }
 
+impl Heading {
+    /// Control characters become spaces, so that a name never breaks a message.
+    pub(crate) fn new(name: &str, unit: &str) -> Heading {
+        let plain = |text: &str| text.trim().replace(char::is_control, " ");
+        Heading {
+            name: plain(name),
+            unit: plain(unit),
+        }
+    }
+}
+
 /// A column that is read, and as what.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Pick {

@@ -39,6 +39,11 @@ fn travel(t: f64) -> f64 {
 
 /// Values against the closed form, relative to their largest.
 fn assert_holds_the_motion(reading: &Reading, name: &str, tolerance: f64) {
+    assert_holds_the_motion_but(reading, name, tolerance, None);
+}
+
+/// The same with a lost sample of the travel, in whose place the one before is held.
+fn assert_holds_the_motion_but(reading: &Reading, name: &str, tolerance: f64, lost: Option<usize>) {
     let record = &reading.record;
     assert_eq!(record.len(), ROWS, "{name}");
     let (u, y) = (record.require("u").unwrap(), record.require("y").unwrap());
@@ -52,8 +57,9 @@ fn assert_holds_the_motion(reading: &Reading, name: &str, tolerance: f64) {
             (u.values[k] - force(t)).abs() < 1.5 * tolerance,
             "{name}: u {k}"
         );
+        let held = if lost == Some(k) { t - STEP_S } else { t };
         assert!(
-            (y.values[k] - travel(t)).abs() < 2.0 * tolerance,
+            (y.values[k] - travel(held)).abs() < 2.0 * tolerance,
             "{name}: y {k}"
         );
     }
@@ -108,6 +114,59 @@ fn val_pyuff_functions_hold_the_motion() {
 fn val_nptdms_waveforms_hold_the_motion() {
     let reading = read("waveform.tdms", &["u=Kraft", "y=Weg"]);
     assert_holds_the_motion(&reading, "waveform.tdms", SINGLE);
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn val_pyarrow_tables_hold_the_motion() {
+    let map = ["u=u", "y=y"];
+    let reading = read("snappy.parquet", &map);
+    assert_holds_the_motion_but(&reading, "snappy.parquet", SINGLE, Some(50));
+    insta::assert_snapshot!(notes(&reading), @r"
+    column 'state' left out: it holds text
+    'u' read from column 'u'
+    'y' read from column 'y'
+    1 of 200 samples of 'y' are missing, at most 1 in a row; the last value before is held in their place
+    ");
+    // Pages of the second version, several groups of rows, other encodings.
+    let reading = read("gzip.parquet", &map);
+    assert_holds_the_motion(&reading, "gzip.parquet", EXACT);
+    let all = read_file(&path("gzip.parquet"), &ReadOptions::all()).unwrap();
+    let count = &all.record.require("count").unwrap().values;
+    assert!((0..ROWS).all(|k| count[k] == k as f64));
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn val_pandas_stamps_become_time() {
+    let reading = read("stamps.parquet", &["u=u [kN]", "y=y [mm]"]);
+    assert_holds_the_motion(&reading, "stamps.parquet", EXACT);
+    insta::assert_snapshot!(notes(&reading), @r"
+    time read from 'logged at' as timestamps, counted from 2024-02-29 23:59:59.500000000
+    column 'logged at' taken as time: it is the only one in a unit of time
+    'u' read from column 'u' in [kN], which the map gives
+    'y' read from column 'y' in [mm], which the map gives
+    ");
+}
+
+#[cfg(feature = "matlab73")]
+#[test]
+fn val_h5py_and_hdf5storage_workspaces_hold_the_motion() {
+    let reading = read("matlab73.mat", &["u=u [kN]", "y=y [mm]"]);
+    assert_holds_the_motion(&reading, "matlab73.mat", EXACT);
+    let reading = read("struct73.mat", &["u=Kraft [kN]", "y=Weg [mm]"]);
+    assert_holds_the_motion(&reading, "struct73.mat", SINGLE);
+    insta::assert_snapshot!(notes(&reading), @r"
+    column 'fs' taken as time: it is the only word on time in the file, and names the sampling
+    'u' read from column 'Kraft' in [kN], which the map gives
+    'y' read from column 'Weg' in [mm], which the map gives
+    ");
+    let reading = read("struct73.mat", &["u=data(:,1) [kN]", "y=data(:,2) [mm]"]);
+    assert_holds_the_motion(&reading, "struct73.mat, matrix", EXACT);
+    let reading = read("plain.h5", &["u=Kraft", "y=Weg"]);
+    assert_holds_the_motion(&reading, "plain.h5", EXACT);
+    let map = ["t=table(:,1) [s]", "u=table(:,2) [kN]", "y=table(:,3) [mm]"];
+    assert_holds_the_motion(&read("plain.h5", &map), "plain.h5, table", EXACT);
 }
 
 #[test]
@@ -169,4 +228,53 @@ fn regress_messages_about_files_of_programs() {
         table += &format!("{error}\n");
     }
     insta::assert_snapshot!(table);
+}
+
+/// Readers of other crates, switched off and on.
+#[test]
+fn regress_messages_about_files_for_other_crates() {
+    let bytes = |name: &str| std::fs::read(path(name)).unwrap();
+    let cut = |name: &str, length: usize| bytes(name)[..length].to_vec();
+    let said = |name: &str, bytes: &[u8]| {
+        let error = parse_file(name, bytes, &ReadOptions::all()).unwrap_err();
+        error.to_string()
+    };
+    let parquet = [
+        said("run.parquet", &cut("snappy.parquet", 4)),
+        said("cut.parquet", &cut("snappy.parquet", 3000)),
+        said("brotli.parquet", &bytes("brotli.parquet")),
+        said("claim.parquet", &bytes("claim.parquet")),
+    ];
+    let hdf5 = [
+        said("run.mat", &cut("matlab73.mat", 520)),
+        said("cut.mat", &cut("matlab73.mat", 5000)),
+        said("half.h5", &cut("plain.h5", 9000)),
+        said("claim.h5", &bytes("claim.h5")),
+    ];
+    if cfg!(feature = "parquet") {
+        insta::assert_snapshot!(parquet.join("\n"), @r"
+        run.parquet: the directory of the file cannot be read (EOF: Parquet file too small. Size is 4 but need 8); the file is cut off, damaged or of a form that is not known (Parquet file)
+        cut.parquet: the directory of the file cannot be read (Invalid Parquet file. Corrupt footer); the file is cut off, damaged or of a form that is not known (Parquet file)
+        brotli.parquet: BROTLI compression found, which is not read; write it with Snappy, gzip, Zstandard or no compression (Parquet file)
+        claim.parquet: more than 2236000 rows in a file of this length found, which is the limit (Parquet file)
+        ");
+    } else {
+        assert_eq!(
+            parquet[0],
+            "run.parquet: a Parquet file found, which is not read; save it as CSV, MAT (-v7), UFF or TDMS (Parquet file)"
+        );
+    }
+    if cfg!(feature = "matlab73") {
+        insta::assert_snapshot!(hdf5.join("\n"), @r"
+        run.mat: the head of the file cannot be read (unexpected EOF: need 9 bytes, have 8); the file is cut off, damaged or of a form that is not known (HDF5 or MATLAB 7.3 file)
+        cut.mat: the list of variables cannot be read (unexpected EOF: need 14404 bytes, have 5000); the file is cut off, damaged or of a form that is not known (HDF5 or MATLAB 7.3 file)
+        half.h5: dataset 'log.Kraft' cannot be read (unexpected EOF: need 14311 bytes, have 9000); the file is cut off, damaged or of a form that is not known (HDF5 or MATLAB 7.3 file)
+        claim.h5: more than 134217728 numbers found, which is the limit (HDF5 or MATLAB 7.3 file)
+        ");
+    } else {
+        assert_eq!(
+            hdf5[0],
+            "run.mat: a HDF5 or MATLAB 7.3 file found, which is not read; save it with -v7 in MATLAB, or as CSV (HDF5 or MATLAB 7.3 file)"
+        );
+    }
 }

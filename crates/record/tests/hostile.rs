@@ -2,13 +2,15 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
 use simgap_record::{ReadOptions, parse_file};
 
 /// One of each reader, and of each way through it.
-const FILES: [&str; 8] = [
+const FILES: &[&str] = &[
     "vectors.mat",
     "vectors-compressed.mat",
     "struct.mat",
@@ -17,6 +19,18 @@ const FILES: [&str; 8] = [
     "pairs.uff",
     "waveform.tdms",
     "logger.csv",
+    #[cfg(feature = "parquet")]
+    "snappy.parquet",
+    #[cfg(feature = "parquet")]
+    "gzip.parquet",
+    #[cfg(feature = "parquet")]
+    "stamps.parquet",
+    #[cfg(feature = "matlab73")]
+    "matlab73.mat",
+    #[cfg(feature = "matlab73")]
+    "struct73.mat",
+    #[cfg(feature = "matlab73")]
+    "plain.h5",
 ];
 /// A damaged file of 20 kB is read in milliseconds; so long takes none.
 const LONGEST: Duration = Duration::from_secs(10);
@@ -28,19 +42,24 @@ fn bytes_of(name: &str) -> Vec<u8> {
     std::fs::read(folder.join(name)).unwrap()
 }
 
-/// Reads, whatever comes of it; an error has one line.
-fn survives(name: &str, bytes: &[u8]) {
+/// Reads, whatever comes of it, and whether it is a record; an error has one line.
+fn survives(name: &str, bytes: &[u8]) -> bool {
     let start = Instant::now();
+    let mut read = false;
     for options in [ReadOptions::all(), ReadOptions::channels(["u"], ["y"])] {
-        if let Err(error) = parse_file(name, bytes, &options) {
-            let line = error.to_string();
-            assert!(
-                !line.is_empty() && !line.contains(['\n', '\r']),
-                "{name}: {line}"
-            );
+        match parse_file(name, bytes, &options) {
+            Ok(_) => read = true,
+            Err(error) => {
+                let line = error.to_string();
+                assert!(
+                    !line.is_empty() && !line.contains(char::is_control),
+                    "{name}: {line:?}"
+                );
+            }
         }
     }
     assert!(start.elapsed() < LONGEST, "{name}: {:?}", start.elapsed());
+    read
 }
 
 /// What is done to a file.
@@ -121,6 +140,18 @@ proptest! {
     }
 }
 
+#[test]
+fn verify_no_name_of_a_column_breaks_a_message() {
+    let mut text = String::from("t [s];u\r\tv [N\tN];y [mm]\n");
+    for k in 0..20 {
+        text += &format!("0,{k:02};{};1,5\n", if k < 10 { "NaN" } else { "2,5" });
+    }
+    let error = parse_file("A.csv", text.as_bytes(), &ReadOptions::all()).unwrap_err();
+    let line = error.to_string();
+    assert!(!line.contains(char::is_control), "{line:?}");
+    assert!(line.contains("10 of 20 samples of column"), "{line:?}");
+}
+
 /// Every length a file can be cut to.
 #[test]
 fn verify_a_file_cut_anywhere_is_no_fault_of_ours() {
@@ -155,23 +186,49 @@ fn verify_a_bomb_does_not_go_off() {
     insta::assert_snapshot!(error.to_string());
 }
 
-/// A long run with its own random numbers, a reader after the other.
+/// Memory that this process has had at most, where the system tells it.
+fn peak_mib() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kib: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kib / 1024)
+}
+
+/// A long run with its own random numbers, a reader after the other; those with a part of their
+/// name in `SIMGAP_FUZZ_FILES`, if it is set.
 #[test]
 #[ignore = "takes the minutes it is given for each reader"]
 fn verify_a_long_run_of_damage() {
     use proptest::strategy::ValueTree as _;
-    use proptest::test_runner::TestRunner;
+    use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
     let minutes: f64 = std::env::var(MINUTES).map_or(0.1, |text| text.parse().unwrap());
-    let mut runner = TestRunner::default();
+    let part = std::env::var("SIMGAP_FUZZ_FILES").unwrap_or_default();
+    let seed = std::process::id().to_le_bytes().repeat(8);
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
+    let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
     let damages = prop::collection::vec(damage(), 1..8);
-    for file in FILES {
+    // Whoever sets a hook last sees all: readers hush their own panics from the first call on.
+    assert!(FILES.iter().all(|file| survives(file, &bytes_of(file))));
+    // Panics of other crates do not come out of the reader, but the hook sees them.
+    let panics = Arc::new(AtomicU64::new(0));
+    let counted = Arc::clone(&panics);
+    std::panic::set_hook(Box::new(move |info| {
+        if counted.fetch_add(1, Ordering::Relaxed) < 20 {
+            println!("{info}");
+        }
+    }));
+    for file in FILES.iter().filter(|file| file.contains(&part)) {
         let whole = bytes_of(file);
-        let (start, mut runs) = (Instant::now(), 0_u64);
+        let (start, mut runs, mut read) = (Instant::now(), 0_u64, 0_u64);
         while start.elapsed().as_secs_f64() < 60.0 * minutes {
             let damages = damages.new_tree(&mut runner).unwrap().current();
-            survives(file, &damaged(whole.clone(), &damages));
+            let bytes = damaged(whole.clone(), &damages);
+            read += u64::from(survives(file, &bytes));
             runs += 1;
         }
-        println!("{file}: {runs} damaged files");
+        let (peak, panics) = (peak_mib(), panics.load(Ordering::Relaxed));
+        println!(
+            "{file}: {runs} damaged files, {read} read, {panics} panics inside so far, peak {peak:?} MiB"
+        );
     }
 }

@@ -236,7 +236,7 @@ fn headed(
     }
     if let Some((_, units)) = units {
         for (heading, unit) in headings.iter_mut().zip(units) {
-            heading.unit = without_brackets(unit).to_owned();
+            *heading = Heading::new(&heading.name, without_brackets(unit));
         }
     }
     Ok(Layout {
@@ -303,17 +303,13 @@ fn without_brackets(cell: &str) -> &str {
 
 /// `y [mm]`, and where the unit is known also `y (mm)`, `y / mm` and `y in mm`.
 pub(crate) fn heading(cell: &str) -> Heading {
-    let made = |name: &str, unit: &str| Heading {
-        name: name.trim().to_owned(),
-        unit: unit.trim().to_owned(),
-    };
     let cell = cell.trim();
     if let Some((name, unit)) = cell
         .strip_suffix(']')
         .and_then(|rest| rest.rsplit_once('['))
         && !name.trim().is_empty()
     {
-        return made(name, unit);
+        return Heading::new(name, unit);
     }
     let round = cell
         .strip_suffix(')')
@@ -321,10 +317,10 @@ pub(crate) fn heading(cell: &str) -> Heading {
     let others = [round, cell.rsplit_once(" / "), cell.rsplit_once(" in ")];
     for (name, unit) in others.into_iter().flatten() {
         if !name.trim().is_empty() && is_unit(unit.trim()) {
-            return made(name, unit);
+            return Heading::new(name, unit);
         }
     }
-    made(cell, "")
+    Heading::new(cell, "")
 }
 
 /// Whether a file begins with a header of the contract's own form: cells separated by commas, one

@@ -1,0 +1,221 @@
+//! Apache Parquet, by the crate `parquet` without its Arrow half.
+//!
+//! A file is a list of row groups, each with one chunk of pages for every column, and a directory at
+//! the end. Columns of numbers, of flags and of stamps are read; stamps become seconds since
+//! the first of them.
+
+mod pages;
+mod values;
+
+use std::sync::Arc;
+
+use bytes::Bytes;
+use parquet::basic::CompressionCodec;
+use parquet::column::reader::{ColumnReader, get_column_reader};
+use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader, RowGroupMetaData};
+use parquet::file::serialized_reader::SerializedPageReader;
+use parquet::schema::types::ColumnDescPtr;
+
+use self::pages::{Pages, Unpacked, is_known};
+use self::values::{Column, Kind, kind_of};
+use crate::error::Place;
+use crate::faults::FormatFault;
+use crate::foreign::{guarded, one_line};
+use crate::note::Note;
+use crate::raw::{Raw, RawColumn, within_limit};
+
+/// Even steps of a time base, packed as differences, take more than a byte for so many.
+const MOST_ROWS_PER_BYTE: u64 = 1000;
+
+/// All columns of numbers of a file.
+pub(crate) fn read(bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
+    let file = Arc::new(Bytes::from(bytes));
+    let metadata = guarded("the directory of the file", || {
+        ParquetMetaDataReader::new()
+            .parse_and_finish(&*file)
+            .map_err(|error| damaged("the directory of the file".to_owned(), &error))
+    })?;
+    let columns = metadata.file_metadata().schema_descr().columns();
+    let rows = rows_of(&metadata, file.len() as u64)?;
+    within_limit(rows.saturating_mul(columns.len() as u64))?;
+    let mut source = Source {
+        file,
+        metadata: &metadata,
+        rows: rows as usize,
+        unpacked: Unpacked::default(),
+    };
+    let mut raw = Raw::default();
+    for (index, column) in columns.iter().enumerate() {
+        let name = column.path().parts().join(".");
+        match kind_of(column) {
+            Err(because) => notes.push(Note::LeftOut {
+                column: name,
+                because: because.to_owned(),
+            }),
+            Ok(kind) => {
+                let what = format!("column '{}'", one_line(&name));
+                let read = guarded(&what, || source.column(index, column, kind))?;
+                raw.columns.push(named(name, read, notes));
+            }
+        }
+    }
+    Ok(raw)
+}
+
+/// Rows of all groups.
+fn rows_of(metadata: &ParquetMetaData, bytes: u64) -> Result<u64, FormatFault> {
+    let rows = metadata.row_groups().iter().try_fold(0_u64, |sum, group| {
+        let rows = u64::try_from(group.num_rows()).map_err(|_| FormatFault::Malformed {
+            at: Place::Names,
+            found: format!("a group of {} rows", group.num_rows()),
+            needed: "none or more",
+        })?;
+        Ok(sum.saturating_add(rows))
+    })?;
+    let most = bytes.saturating_mul(MOST_ROWS_PER_BYTE);
+    if rows > most {
+        return Err(FormatFault::TooMuch {
+            most,
+            what: "rows in a file of this length",
+        });
+    }
+    Ok(rows)
+}
+
+fn named(name: String, column: Column, notes: &mut Vec<Note>) -> RawColumn {
+    let unit = if let Kind::Stamp(stamps) = column.kind {
+        notes.push(Note::Stamps {
+            column: name.clone(),
+            form: stamps.form(),
+            first: stamps.text(column.first),
+        });
+        "s"
+    } else {
+        ""
+    };
+    RawColumn {
+        name,
+        unit: unit.to_owned(),
+        values: column.values,
+    }
+}
+
+struct Source<'a> {
+    file: Arc<Bytes>,
+    metadata: &'a ParquetMetaData,
+    rows: usize,
+    unpacked: Unpacked,
+}
+
+impl Source<'_> {
+    fn column(
+        &mut self,
+        index: usize,
+        descriptor: &ColumnDescPtr,
+        kind: Kind,
+    ) -> Result<Column, FormatFault> {
+        let mut column = Column::new(kind, self.rows);
+        for group in self.metadata.row_groups() {
+            self.chunk(group, index, descriptor, &mut column)?;
+        }
+        Ok(column)
+    }
+
+    fn chunk(
+        &mut self,
+        group: &RowGroupMetaData,
+        index: usize,
+        descriptor: &ColumnDescPtr,
+        column: &mut Column,
+    ) -> Result<(), FormatFault> {
+        let what = || format!("column '{}'", one_line(&descriptor.path().string()));
+        // Not negative: they are summed.
+        let rows = group.num_rows() as usize;
+        let pages = self.pages(group, index, descriptor, rows)?;
+        let reader = get_column_reader(Arc::clone(descriptor), pages);
+        let levels = descriptor.max_def_level();
+        let read = match reader {
+            ColumnReader::BoolColumnReader(mut reader) => {
+                column.take(&mut reader, rows, levels, |flag| f64::from(u8::from(*flag)))
+            }
+            ColumnReader::FloatColumnReader(mut reader) => {
+                column.take(&mut reader, rows, levels, |value| f64::from(*value))
+            }
+            ColumnReader::DoubleColumnReader(mut reader) => {
+                column.take(&mut reader, rows, levels, |value| *value)
+            }
+            ColumnReader::Int32ColumnReader(mut reader) => {
+                column.take_counts(&mut reader, rows, levels, |count| i64::from(*count))
+            }
+            ColumnReader::Int64ColumnReader(mut reader) => {
+                column.take_counts(&mut reader, rows, levels, |count| *count)
+            }
+            ColumnReader::Int96ColumnReader(mut reader) => {
+                column.take_counts(&mut reader, rows, levels, |stamp| stamp.to_nanos())
+            }
+            _ => Ok(()),
+        };
+        if self.unpacked.is_too_much() {
+            return Err(FormatFault::TooMuch {
+                most: crate::MAX_FILE_BYTES,
+                what: "unpacked bytes",
+            });
+        }
+        read.map_err(|error| damaged(what(), &error))
+    }
+
+    fn pages(
+        &self,
+        group: &RowGroupMetaData,
+        index: usize,
+        descriptor: &ColumnDescPtr,
+        rows: usize,
+    ) -> Result<Box<Pages>, FormatFault> {
+        let what = || format!("column '{}'", one_line(&descriptor.path().string()));
+        let broken = |reason: &str| FormatFault::Damaged {
+            what: what(),
+            reason: reason.to_owned(),
+        };
+        let chunk = group.columns().get(index);
+        let chunk = chunk.ok_or_else(|| broken("a group of rows lacks it"))?;
+        if chunk.column_type() != descriptor.physical_type() {
+            return Err(broken("a group of rows holds another type"));
+        }
+        let codec = chunk.compression_codec();
+        if !is_known(codec) {
+            return Err(FormatFault::Unsupported {
+                found: format!("{codec:?} compression"),
+                instead: "write it with Snappy, gzip, Zstandard or no compression",
+            });
+        }
+        let start = chunk.dictionary_page_offset();
+        let start = start.unwrap_or_else(|| chunk.data_page_offset());
+        let end = start.checked_add(chunk.compressed_size());
+        let within = |end: i64| usize::try_from(end).is_ok_and(|end| end <= self.file.len());
+        if start < 0 || chunk.compressed_size() < 0 || !end.is_some_and(within) {
+            return Err(broken("its bytes lie beyond the file"));
+        }
+        let plain = chunk.clone().into_builder();
+        let plain = plain.set_compression_codec(CompressionCodec::UNCOMPRESSED);
+        let plain = plain.build().map_err(|error| damaged(what(), &error))?;
+        let packed = SerializedPageReader::new(Arc::clone(&self.file), &plain, rows, None)
+            .map_err(|error| damaged(what(), &error))?;
+        Ok(Box::new(Pages {
+            packed,
+            codec,
+            kind: descriptor.physical_type(),
+            leveled: descriptor.max_def_level() > 0,
+            unpacked: self.unpacked.clone(),
+            dictionary: false,
+        }))
+    }
+}
+
+fn damaged(what: String, error: &parquet::errors::ParquetError) -> FormatFault {
+    let text = error.to_string();
+    let reason = text.strip_prefix("Parquet error: ").unwrap_or(&text);
+    FormatFault::Damaged {
+        what,
+        reason: one_line(reason),
+    }
+}

@@ -1,0 +1,179 @@
+//! MATLAB 7.3 and HDF5 in general, by the crate `hdf5-pure`.
+//!
+//! `save -v7.3` writes an HDF5 file after a header of 512 bytes: a dataset for each variable, its
+//! class in the attribute `MATLAB_class`, a group for each structure. MATLAB counts the first index
+//! fastest and HDF5 the last, so the sizes stand the other way round.
+
+use hdf5_pure::{AttrValue, DType, Dataset, Group};
+
+use crate::arrays::Array;
+use crate::faults::FormatFault;
+use crate::foreign::{guarded, one_line};
+use crate::raw::within_limit;
+
+/// Packed best, a byte stands for a hundred numbers; those nobody wrote take no byte at all.
+const MOST_NUMBERS_PER_BYTE: u64 = 1000;
+/// Groups within groups that are read.
+const DEEPEST: usize = 4;
+/// Groups and datasets that are looked at: links may run in circles.
+const MOST_OBJECTS: usize = 10_000;
+/// Classes of MATLAB that are stored as numbers and are none.
+const NO_NUMBERS: [&str; 4] = ["char", "cell", "function_handle", "string"];
+
+type Attributes = std::collections::HashMap<String, AttrValue>;
+
+/// All real numeric arrays of a file of up to two dimensions.
+pub(crate) fn read(bytes: Vec<u8>) -> Result<Vec<Array>, FormatFault> {
+    guarded("the file", || {
+        let most = MOST_NUMBERS_PER_BYTE.saturating_mul(bytes.len() as u64);
+        let file = hdf5_pure::File::from_bytes(bytes).map_err(damaged("the head of the file"))?;
+        let mut walk = Walk {
+            most,
+            ..Walk::default()
+        };
+        walk.group(&file.root(), "", 0)?;
+        Ok(walk.arrays)
+    })
+}
+
+#[derive(Default)]
+struct Walk {
+    arrays: Vec<Array>,
+    objects: usize,
+    /// Numbers so far.
+    values: u64,
+    /// Most that a file of this length can hold.
+    most: u64,
+}
+
+impl Walk {
+    fn group(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), FormatFault> {
+        let what = match path {
+            "" => "the list of variables".to_owned(),
+            path => format!("group '{path}'"),
+        };
+        for (name, dataset) in group.iter_datasets().map_err(damaged(&what))? {
+            self.count()?;
+            let path = joined(path, &name);
+            self.dataset(&dataset, &path)?;
+        }
+        if depth == DEEPEST {
+            return Ok(());
+        }
+        for (name, group) in group.iter_groups().map_err(damaged(&what))? {
+            self.count()?;
+            // What MATLAB keeps for itself: `#refs#`, `#subsystem#`.
+            if !name.starts_with('#') {
+                self.group(&group, &joined(path, &name), depth + 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn count(&mut self) -> Result<(), FormatFault> {
+        self.objects += 1;
+        if self.objects > MOST_OBJECTS {
+            return Err(FormatFault::TooMuch {
+                most: MOST_OBJECTS as u64,
+                what: "groups and datasets",
+            });
+        }
+        Ok(())
+    }
+
+    fn dataset(&mut self, dataset: &Dataset, path: &str) -> Result<(), FormatFault> {
+        let what = format!("dataset '{path}'");
+        let damaged = damaged(&what);
+        if !is_number(&dataset.dtype().map_err(&damaged)?) {
+            return Ok(());
+        }
+        let attributes = dataset.attrs().map_err(&damaged)?;
+        let class = text(&attributes, "MATLAB_class");
+        if attributes.contains_key("MATLAB_empty")
+            || class.is_some_and(|class| NO_NUMBERS.contains(&class))
+        {
+            return Ok(());
+        }
+        let (outer, inner) = match dataset.shape().map_err(&damaged)?[..] {
+            [] => (1, 1),
+            [rows] => (1, rows),
+            [outer, inner] => (outer, inner),
+            _ => return Ok(()),
+        };
+        let count = outer.saturating_mul(inner);
+        self.values = self.values.saturating_add(count);
+        within_limit(self.values)?;
+        if self.values > self.most {
+            return Err(FormatFault::TooMuch {
+                most: self.most,
+                what: "numbers in a file of this length",
+            });
+        }
+        // A chunk is unpacked whole, however few of its numbers belong to the dataset.
+        if let Some(chunk) = dataset.chunk_shape().map_err(&damaged)? {
+            within_limit(chunk.into_iter().fold(1, u64::saturating_mul))?;
+        }
+        let values = dataset.read_f64().map_err(&damaged)?;
+        if values.len() as u64 != count {
+            return Err(FormatFault::Damaged {
+                what: one_line(&what),
+                reason: format!("{} numbers where {count} should be", values.len()),
+            });
+        }
+        // Both are at most the number of values.
+        let (outer, inner) = (outer as usize, inner as usize);
+        let unit = text(&attributes, "units").or_else(|| text(&attributes, "unit"));
+        let unit = unit.unwrap_or_default().to_owned();
+        let (rows, columns, values) = if class.is_some() || outer == 1 {
+            (inner, outer, values)
+        } else {
+            (outer, inner, by_columns(&values, outer, inner))
+        };
+        self.arrays.push(Array {
+            path: path.to_owned(),
+            unit,
+            rows,
+            columns,
+            values,
+        });
+        Ok(())
+    }
+}
+
+/// Numbers stored row by row, column by column.
+fn by_columns(values: &[f64], rows: usize, columns: usize) -> Vec<f64> {
+    let column = |k: usize| values.iter().skip(k).step_by(columns).copied();
+    let mut turned = Vec::with_capacity(rows * columns);
+    (0..columns).for_each(|k| turned.extend(column(k)));
+    turned
+}
+
+fn is_number(kind: &DType) -> bool {
+    use DType::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
+    matches!(
+        kind,
+        F32 | F64 | I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64
+    )
+}
+
+fn text<'a>(attributes: &'a Attributes, name: &str) -> Option<&'a str> {
+    attributes.get(name).and_then(AttrValue::as_str)
+}
+
+fn joined(path: &str, name: &str) -> String {
+    if path.is_empty() {
+        return name.to_owned();
+    }
+    format!("{path}.{name}")
+}
+
+fn damaged<E: std::fmt::Display>(what: &str) -> impl Fn(E) -> FormatFault {
+    move |error| {
+        let text = error.to_string();
+        let reason = text.strip_prefix("HDF5 format error: ").unwrap_or(&text);
+        FormatFault::Damaged {
+            what: one_line(what),
+            reason: one_line(reason),
+        }
+    }
+}
