@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::folder::Folder;
 use crate::progress::Steps;
 use crate::text::command;
-use crate::{input, say};
+use crate::{effects, input, say};
 
 /// Folder of the predictions, inside the folder of the results.
 const PREDICTIONS: &str = "predictions";
@@ -34,6 +34,9 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         &args.check
     };
     distinct_stems(judged)?;
+    for kind in &args.withhold {
+        effects::known("--withhold: ", kind)?;
+    }
     let model = input::model(&args.model)?;
     let read = |paths: &[PathBuf]| {
         paths
@@ -61,6 +64,8 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     let conversions = all.flat_map(|record| input::conversions(record, &model));
     outcome.diagnosis.notes.extend(conversions);
     let notes = &mut outcome.diagnosis.notes;
+    notes.splice(0..0, judged_by_its_own(args));
+    notes.extend(input::idle_masses(&model));
     notes.extend(read_notes.into_iter().chain(check_notes));
     let context = simgap_report::page::ReportContext {
         program_version: env!("CARGO_PKG_VERSION").to_string(),
@@ -83,6 +88,24 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         }
     }
     Ok(())
+}
+
+/// A word on every record that is learned from and judged by.
+fn judged_by_its_own(args: &DiagnoseArgs) -> Vec<String> {
+    let place = |path: &PathBuf| path.canonicalize().ok();
+    let train: Vec<Option<PathBuf>> = args.train.iter().map(place).collect();
+    let both = args
+        .check
+        .iter()
+        .filter(|path| train.contains(&place(path)));
+    both.map(|path| {
+        format!(
+            "{} is given as --train and as --check: the figures on it are about data that it was \
+             fitted to",
+            path.display()
+        )
+    })
+    .collect()
 }
 
 /// Records, and the notes on all of them.

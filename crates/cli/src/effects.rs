@@ -18,7 +18,7 @@ const OFFERED: usize = 3;
 pub(crate) fn run(args: &EffectsArgs) -> Result<(), CliError> {
     let entries: Vec<&dyn Effect> = match &args.kind {
         None => catalogue().to_vec(),
-        Some(kind) => vec![find(kind).ok_or_else(|| unknown(kind))?],
+        Some(kind) => vec![known("", kind)?],
     };
     match (args.format, &args.kind) {
         (Format::Json, _) => {
@@ -32,12 +32,18 @@ pub(crate) fn run(args: &EffectsArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-fn unknown(kind: &str) -> CliError {
+/// The entry of a kind, or the kinds that look like it.
+pub(crate) fn known(option: &'static str, kind: &str) -> Result<&'static dyn Effect, CliError> {
+    find(kind).ok_or_else(|| unknown(option, kind))
+}
+
+fn unknown(option: &'static str, kind: &str) -> CliError {
     let kinds = catalogue().iter().map(|effect| effect.kind());
     let mut near: Vec<(f64, &str)> = kinds.map(|known| (likeness(kind, known), known)).collect();
     near.sort_by(|a, b| b.0.total_cmp(&a.0));
     let near: Vec<&str> = near.iter().take(OFFERED).map(|(_, kind)| *kind).collect();
     CliError::UnknownKind {
+        option,
         found: kind.to_string(),
         near: near.join(", "),
     }

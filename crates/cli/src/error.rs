@@ -14,7 +14,7 @@ use thiserror::Error;
 /// Why a command stops.
 #[derive(Debug, Error)]
 pub(crate) enum CliError {
-    #[error("{}: cannot be read ({found}), needed is a model file", .path.display())]
+    #[error("{}: {found}, needed is a model file", .path.display())]
     ModelFile { path: PathBuf, found: String },
     #[error("{}: {error}", .path.display())]
     Model { path: PathBuf, error: ModelError },
@@ -49,8 +49,15 @@ pub(crate) enum CliError {
     Exists { path: PathBuf },
     #[error("{}: is an input of this very command, needed is another file to write to", .path.display())]
     OverInput { path: PathBuf },
-    #[error("unknown kind \"{found}\", nearest are: {near}; simgap effects lists all of them")]
-    UnknownKind { found: String, near: String },
+    #[error(
+        "{option}unknown kind \"{found}\", nearest are: {near}; simgap effects lists all of them"
+    )]
+    UnknownKind {
+        /// Empty where the kind is the argument itself.
+        option: &'static str,
+        found: String,
+        near: String,
+    },
     #[error("--jobs is {found}, needed is 1 to {most}")]
     Jobs { found: usize, most: usize },
     #[error("the threads could not be started ({found}), needed is a smaller --jobs")]

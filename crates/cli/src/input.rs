@@ -1,10 +1,10 @@
 //! Reading models and records.
 
-use std::io::Read as _;
+use std::io::{ErrorKind, Read as _};
 use std::path::Path;
 
 use simgap_effects::Placed;
-use simgap_model::Model;
+use simgap_model::{Location, Model};
 use simgap_record::{Mend, Quantity, ReadOptions, Reading, Record, RecordError, read_file};
 use simgap_simulate::{input_quantity, output_quantity};
 
@@ -21,11 +21,18 @@ pub(crate) fn model(path: &Path) -> Result<Model, CliError> {
         path: path.into(),
         found,
     };
-    let file = std::fs::File::open(path).map_err(|error| unreadable(error.to_string()))?;
+    let refused = |error: std::io::Error| {
+        unreadable(match error.kind() {
+            ErrorKind::NotFound => "no such file".to_string(),
+            ErrorKind::IsADirectory => "is a directory".to_string(),
+            _ => format!("cannot be read ({error})"),
+        })
+    };
+    let file = std::fs::File::open(path).map_err(refused)?;
     let mut text = String::new();
     file.take(MAX_MODEL_BYTES + 1)
         .read_to_string(&mut text)
-        .map_err(|error| unreadable(error.to_string()))?;
+        .map_err(refused)?;
     if text.len() as u64 > MAX_MODEL_BYTES {
         return Err(unreadable(format!("longer than {MAX_MODEL_BYTES} bytes")));
     }
@@ -108,6 +115,39 @@ fn inputs(model: &Model) -> impl Iterator<Item = &str> {
 
 fn outputs(model: &Model) -> impl Iterator<Item = &str> {
     model.outputs.iter().map(|output| output.channel.as_str())
+}
+
+/// Masses that nothing joins, drives or measures, one sentence each: such a mass is legal and does
+/// nothing, so it is most likely a member that was forgotten.
+pub(crate) fn idle_masses(model: &Model) -> Vec<String> {
+    let between = |pair: &[String; 2], name: &str| pair.iter().any(|node| node == name);
+    let used = |name: &str| {
+        model.springs.iter().any(|s| between(&s.between, name))
+            || model.dampers.iter().any(|d| between(&d.between, name))
+            || model.inputs.iter().any(|input| input.at == name)
+            || model.pendulums.iter().any(|pendulum| pendulum.at == name)
+            || model.outputs.iter().any(|output| {
+                output.at.as_deref() == Some(name)
+                    || output
+                        .between
+                        .as_ref()
+                        .is_some_and(|pair| between(pair, name))
+            })
+            || model.effects.iter().any(|effect| match &effect.at {
+                Location::Between(pair) => between(pair, name),
+                Location::Mass(mass) => mass == name,
+                _ => false,
+            })
+    };
+    let masses = model.masses.iter().filter(|mass| !used(&mass.name));
+    masses
+        .map(|mass| {
+            format!(
+                "nothing joins, drives or measures mass '{}': is a spring or a damper missing?",
+                mass.name
+            )
+        })
+        .collect()
 }
 
 /// What each column without a gain must measure.

@@ -19,25 +19,54 @@ const EDGE: anstyle::Style =
 const MOST_BYTES: u64 = 64 << 20;
 /// Characters of a line that are shown.
 const SHOWN: usize = 90;
+/// Words of a message among which a key is looked for.
+const FIRST_WORDS: usize = 3;
 /// Lines in which the header of a record is looked for.
 const HEADER_LINES: usize = 50;
 
 /// The line a message speaks of with a caret below; `None` where it speaks of none.
 pub(crate) fn picture(message: &str) -> Option<String> {
-    let (file, line) = match named_line(message) {
-        Some(named) => named,
-        None => {
-            let (file, item) = named_item(message)?;
-            (
-                file,
-                line_of_item(&lines(file, usize::MAX)?, item, message)?,
-            )
-        }
-    };
+    let (file, line) = place(message)?;
     let above = lines(file, line)?;
     let text = above.get(line - 1)?;
+    // What is no text cannot be shown.
+    if text.contains(|c: char| c.is_control() && c != '\t') {
+        return None;
+    }
     let (from, to) = span(&above, text, message);
     Some(drawn(file, line, text, from, to))
+}
+
+/// The file and the line: as the message says, or where the item, the column or the key stands that
+/// it names.
+fn place(message: &str) -> Option<(&str, usize)> {
+    if let Some(named) = named_line(message) {
+        return Some(named);
+    }
+    if let Some((file, item)) = named_item(message) {
+        return Some((
+            file,
+            line_of_item(&lines(file, usize::MAX)?, item, message)?,
+        ));
+    }
+    if let Some((file, name)) = message.split_once(": column '") {
+        let name = name.split_once('\'')?.0;
+        let above = lines(file, HEADER_LINES)?;
+        let header = above
+            .iter()
+            .position(|line| cell_named(line, separator(line), name).is_some());
+        return Some((file, header? + 1));
+    }
+    let (file, about) = message.split_once(": ")?;
+    let key = about.split_once(" is \"")?.0;
+    let found = lines(file, usize::MAX)?;
+    let line = found.iter().position(|line| key_of(line) == Some(key))?;
+    Some((file, line + 1))
+}
+
+/// The key of a line of a model file.
+fn key_of(line: &str) -> Option<&str> {
+    line.split_once('=').map(|(key, _)| key.trim())
 }
 
 /// `FILE: line N` and perhaps `, column M`.
@@ -94,18 +123,22 @@ fn line_of_item(lines: &[String], item: &str, message: &str) -> Option<usize> {
     let start = starts.map(|(start, _)| start).find(holds)?;
     // What is wrong is what the message quotes or names after the item itself.
     let (_, about) = message.split_once(item)?;
-    let first = about
-        .trim_start_matches(':')
-        .split_whitespace()
-        .next()
-        .unwrap_or_default();
+    let words = first_words(about);
     let key = |line: &&usize| {
         let text = lines[**line].trim();
         quoted(about).any(|word| text.contains(&format!("\"{word}\"")))
-            || (!first.is_empty() && text.split(['=', ' ']).next() == Some(first))
+            || key_of(text).is_some_and(|key| words.contains(&key))
+            || (words.starts_with(&["unknown", "kind"]) && key_of(text) == Some("kind"))
     };
     let inside: Vec<usize> = block(start).collect();
     Some(inside.iter().find(key).copied().unwrap_or(start) + 1)
+}
+
+/// The words in which a message says what it found.
+fn first_words(about: &str) -> Vec<&str> {
+    let found = about.split(", needed").next().unwrap_or_default();
+    let words = found.trim_start_matches(':').split_whitespace();
+    words.take(FIRST_WORDS).collect()
 }
 
 /// What stands in quotation marks of any kind.
@@ -139,6 +172,12 @@ fn span(above: &[String], text: &str, message: &str) -> (usize, usize) {
     if let Some((from, to)) = column.and_then(|(name, _)| cell(above, text, name)) {
         return (chars(from), chars(to));
     }
+    if about.contains(": time goes") || about.contains(": the time step") {
+        let time = cell(above, text, "t").or_else(|| nth_cell(text, separator(text), 0));
+        if let Some((from, to)) = time {
+            return (chars(from), chars(to));
+        }
+    }
     if let Some((from, to)) = numbered(about).and_then(|n| nth_cell(text, separator(text), n)) {
         return (chars(from), chars(to));
     }
@@ -147,9 +186,28 @@ fn span(above: &[String], text: &str, message: &str) -> (usize, usize) {
             return (chars(from), chars(from + word.len()));
         }
     }
+    if let Some((from, to)) = key_or_value(text, message) {
+        return (chars(from), chars(to));
+    }
     let end = text.trim_end().len();
     let start = text.len() - text.trim_start().len();
     (chars(start.min(end)), chars(end))
+}
+
+/// What a line `key = value` is blamed for, in bytes: `key is ...` for its value, `unknown ... key`
+/// for its key.
+fn key_or_value(text: &str, message: &str) -> Option<(usize, usize)> {
+    let key = key_of(text)?;
+    let start = text.find(key)?;
+    if message.contains(&format!(": {key} is ")) {
+        let from = text.find('=')? + 1;
+        let value = text[from..].split('#').next()?;
+        let blank = value.len() - value.trim_start().len();
+        return Some((from + blank, from + value.trim_end().len()));
+    }
+    message
+        .contains(&format!(" {key},"))
+        .then_some((start, start + key.len()))
 }
 
 /// The character of `N, column M: ...`, counted from 1 there.
@@ -177,16 +235,20 @@ fn separator(text: &str) -> char {
 /// The cell of a line below the header cell of that name.
 fn cell(above: &[String], text: &str, name: &str) -> Option<(usize, usize)> {
     let separator = separator(text);
-    let names = |line: &String| {
-        let mut cells = line
-            .split(separator)
-            .map(|cell| cell.trim().trim_matches('"'));
-        cells.position(|cell| {
-            cell == name || cell.split(['[', '(']).next().map(str::trim) == Some(name)
-        })
-    };
-    let index = above.iter().take(HEADER_LINES).find_map(names)?;
+    let header = above.iter().take(HEADER_LINES);
+    let index = header
+        .into_iter()
+        .find_map(|line| cell_named(line, separator, name))?;
     nth_cell(text, separator, index)
+}
+
+/// The cell of a header that has this name, with or without a unit.
+fn cell_named(line: &str, separator: char, name: &str) -> Option<usize> {
+    let mut cells = line
+        .split(separator)
+        .map(|cell| cell.trim().trim_matches('"'));
+    cells
+        .position(|cell| cell == name || cell.split(['[', '(']).next().map(str::trim) == Some(name))
 }
 
 fn nth_cell(text: &str, separator: char, index: usize) -> Option<(usize, usize)> {
@@ -249,6 +311,7 @@ mod tests {
         assert_eq!(point("A.csv: line 2: column 'y' holds"), "0.1");
         assert_eq!(point("A.csv: line 1: column 2 is headed 'u [N]'"), "u [N]");
         assert_eq!(point("A.csv: line 2: 3 cells found"), "0.00,1.5,0.1");
+        assert_eq!(point("A.csv: line 3: time goes from 1 s to 0 s"), "0.01");
         let german = ["Zeit (s);Weg (mm)", "0,00;1,5"];
         assert_eq!(pointed(&german, "B.csv: line 2: column 'Weg' holds"), "1,5");
         let model = ["[[mass]]", "wieght = 1.0"];
@@ -279,9 +342,23 @@ mod tests {
         );
         assert_eq!(
             line("m: [[spring]] \"rod\": the name is used twice"),
-            Some(4)
+            Some(5)
         );
         assert_eq!(line("m: [[mass]] \"rod\": value is 0"), None);
+    }
+
+    #[test]
+    fn verify_the_key_or_the_value_is_pointed_at() {
+        let blamed = |text: &str, message: &str| {
+            key_or_value(text, message).map(|(from, to)| text[from..to].to_owned())
+        };
+        let about = |what: &str| format!("m: [[mass]] \"a\": {what}, needed is another");
+        let value = blamed("value = -5.0   # kg", &about("value is -5"));
+        assert_eq!(value.as_deref(), Some("-5.0"));
+        let key = blamed("  force = 1.0", &about("unknown parameter force"));
+        assert_eq!(key.as_deref(), Some("force"));
+        assert_eq!(blamed("name = \"a\"", &about("value is -5")), None);
+        assert_eq!(blamed("[[mass]]", &about("value is -5")), None);
     }
 
     #[test]

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use clap::CommandFactory as _;
+use clap::builder::PossibleValuesParser;
+use simgap_effects::catalogue;
 use simgap_record::write_text_atomic;
 
 use crate::args::{Cli, CompletionsArgs, ManArgs};
@@ -14,8 +16,18 @@ use crate::say_plain;
 const NAME: &str = "simgap";
 
 pub(crate) fn completions(args: &CompletionsArgs) {
+    // The kinds of the catalogue are completed; elsewhere an unknown one has a better message than
+    // the list of all.
+    let kinds = || PossibleValuesParser::new(catalogue().iter().map(|effect| effect.kind()));
+    let mut command = Cli::command()
+        .mut_subcommand("effects", |c| {
+            c.mut_arg("kind", |kind| kind.value_parser(kinds()))
+        })
+        .mut_subcommand("diagnose", |c| {
+            c.mut_arg("withhold", |kind| kind.value_parser(kinds()))
+        });
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), NAME, &mut script);
+    clap_complete::generate(args.shell, &mut command, NAME, &mut script);
     say_plain(&String::from_utf8_lossy(&script));
 }
 

@@ -26,6 +26,15 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     let mut run = Run::new(&model, &record).map_err(failed)?;
     let mut problem = Problem::new(&model, vec![run.clone()]).map_err(failed)?;
     let measured = run.measured.iter().any(Option::is_some);
+    let mut all_notes = input::idle_masses(&model);
+    all_notes.extend(notes);
+    if !measured && !args.from_rest && !model.outputs.is_empty() {
+        all_notes.push(format!(
+            "{}: no column is an output of the model, so the prediction starts at rest at zero \
+             displacement",
+            record.name()
+        ));
+    }
     let mut found = None;
     if measured && !args.from_rest {
         // The record need not start at rest, nor with the even half of an alternation: its outputs
@@ -74,7 +83,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     write_csv_atomic(&args.out, &headers, &columns)?;
     folder.keep();
     say(&format!("{}\n", args.out.display()));
-    for note in notes {
+    for note in all_notes {
         say(&format!("note: {note}\n"));
     }
     Ok(())

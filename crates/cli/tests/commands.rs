@@ -169,9 +169,29 @@ fn regress_the_place_is_pointed_at() {
     let strangers = common::MODEL.replace("[\"block\", \"ground\"]", "[\"blok\", \"ground\"]");
     bench.write("broken.toml", twice);
     bench.write("strange.toml", strangers);
+    bench.write(
+        "light.toml",
+        common::MODEL.replace("value = 2.0", "value = -2.0   # kg"),
+    );
+    bench.write("later.toml", common::MODEL.replace("model/1", "model/2"));
+    let effect = "[[effect]]\nkind = \"coulomb_friction\"\nbetween = [\"block\", \"ground\"]\n";
+    let parameter = "friction_n = 1.0\n";
+    bench.write("effect.toml", [common::MODEL, effect, parameter].join("\n"));
+    let velocity = common::MODEL.replace("\"displacement\"", "\"velocity\"");
+    bench.write("velocity.toml", velocity);
+    bench.write("good.csv", &good);
     let mut told = String::new();
-    for model in ["model.toml", "broken.toml", "strange.toml", "none.toml"] {
-        let arguments = ["simulate", model, "--record", "A.csv", "--out", "p.csv"];
+    for (model, record) in [
+        ("model.toml", "A.csv"),
+        ("broken.toml", "A.csv"),
+        ("strange.toml", "A.csv"),
+        ("light.toml", "A.csv"),
+        ("later.toml", "A.csv"),
+        ("effect.toml", "A.csv"),
+        ("velocity.toml", "good.csv"),
+        ("none.toml", "A.csv"),
+    ] {
+        let arguments = ["simulate", model, "--record", record, "--out", "p.csv"];
         let mut command = bench.simgap(&arguments);
         let output = command.env("CLICOLOR_FORCE", "1").output().unwrap();
         let shown = String::from_utf8(output.stderr).unwrap();
@@ -182,4 +202,66 @@ fn regress_the_place_is_pointed_at() {
         assert!(told.contains(&line), "{told}");
     }
     insta::assert_snapshot!(told);
+}
+
+/// Kinds are completed where a kind is asked for.
+#[test]
+fn verify_kinds_are_completed() {
+    let bench = Bench::new();
+    // That of fish completes options only.
+    for (shell, places) in [("bash", 2), ("zsh", 2), ("fish", 1)] {
+        let script = bench.done(&["completions", shell]);
+        let uses = script.matches("time_varying_stiffness").count();
+        assert!(uses >= places, "{shell}: {uses}");
+    }
+}
+
+/// What is legal and yet hardly meant is said.
+#[test]
+fn verify_what_is_hardly_meant_is_said() {
+    let bench = Bench::good();
+    let idle = "\n[[mass]]\nname = \"loose\"\nvalue = 1.0\n";
+    bench.write("idle.toml", [common::MODEL, idle].concat());
+    let said = bench.done(&[
+        "simulate",
+        "idle.toml",
+        "--record",
+        "A.csv",
+        "--out",
+        "p.csv",
+    ]);
+    assert!(
+        said.contains("nothing joins, drives or measures mass 'loose'"),
+        "{said}"
+    );
+    let inputs: String = record(60)
+        .lines()
+        .map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n")
+        .collect();
+    bench.write("U.csv", inputs);
+    let plain = [
+        "simulate",
+        "model.toml",
+        "--record",
+        "U.csv",
+        "--out",
+        "p.csv",
+    ];
+    assert!(bench.done(&plain).contains("starts at rest"));
+    let meant = [&plain[..], &["--from-rest"]].concat();
+    assert!(!bench.done(&meant).contains("starts at rest"));
+    let own = [
+        "diagnose",
+        "model.toml",
+        "--train",
+        "A.csv",
+        "--check",
+        "A.csv",
+        "--out",
+        "out",
+    ];
+    bench.done(&own);
+    let json: Value = serde_json::from_str(&bench.read("out/diagnosis.json")).unwrap();
+    let first = json["notes"][0].as_str().unwrap();
+    assert!(first.contains("data that it was fitted to"), "{first}");
 }

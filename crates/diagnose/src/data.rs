@@ -80,10 +80,10 @@ pub(crate) fn divide(
             held_run.first_index = cut;
             data.check.push(held_run);
             data.notes.push(format!(
-                "no check record was given: the last third of {} ({:.6} s to {:.6} s) was held back",
+                "no check record was given: the last third of {} ({} s to {} s) was held back",
                 record.name(),
-                held.time_s().first().copied().unwrap_or(0.0),
-                held.time_s().last().copied().unwrap_or(0.0),
+                to_microseconds(held.time_s().first()),
+                to_microseconds(held.time_s().last()),
             ));
             data.check_times.push(held.time_s().to_vec());
         } else {
@@ -114,6 +114,11 @@ fn enough(
         needed,
         purpose,
     })
+}
+
+/// A stamp without digits that no clock has.
+fn to_microseconds(stamp_s: Option<&f64>) -> f64 {
+    (stamp_s.copied().unwrap_or(0.0) * 1e6).round() / 1e6
 }
 
 fn held_back(record: &Record) -> usize {

@@ -55,16 +55,18 @@ pub(crate) fn run(args: &InitArgs) -> Result<(), CliError> {
     let folder = Folder::make(parent, &[], std::slice::from_ref(out))?;
     write_text_atomic(out, &text)?;
     folder.keep();
-    let mut told = told(args, &roles, record.as_ref(), out);
-    for (i, note) in notes.iter().enumerate() {
-        named(&mut told, if i == 0 { "notes" } else { "" }, note, INDENT);
-    }
-    say(&told);
+    say(&told(args, &roles, record.as_ref(), &notes, out));
     Ok(())
 }
 
 /// What was taken for what, and what to do now.
-fn told(args: &InitArgs, roles: &Roles, record: Option<&Record>, out: &Path) -> String {
+fn told(
+    args: &InitArgs,
+    roles: &Roles,
+    record: Option<&Record>,
+    notes: &[String],
+    out: &Path,
+) -> String {
     let mut text = String::new();
     if let Some(record) = record {
         text.push_str(&format!("{}\n", styled(STRONG, &shown(record.name()))));
@@ -88,6 +90,9 @@ fn told(args: &InitArgs, roles: &Roles, record: Option<&Record>, out: &Path) -> 
     }
     for warning in &roles.warnings {
         named(&mut text, "mind", warning, INDENT);
+    }
+    for (i, note) in notes.iter().enumerate() {
+        named(&mut text, if i == 0 { "notes" } else { "" }, note, INDENT);
     }
     let model = out.display();
     named(&mut text, "written", &model.to_string(), INDENT);
