@@ -256,7 +256,7 @@ fn regress_messages_about_files_for_other_crates() {
         run.parquet: the directory of the file cannot be read (EOF: Parquet file too small. Size is 4 but need 8); the file is cut off, damaged or of a form that is not known (Parquet file)
         cut.parquet: the directory of the file cannot be read (Invalid Parquet file. Corrupt footer); the file is cut off, damaged or of a form that is not known (Parquet file)
         brotli.parquet: BROTLI compression found, which is not read; write it with Snappy, gzip, Zstandard or no compression (Parquet file)
-        claim.parquet: more than 2236000 rows in a file of this length found, which is the limit (Parquet file)
+        claim.parquet: more than 223600 rows in a file of this length found, which is the limit (Parquet file)
         ");
     } else {
         assert_eq!(

@@ -24,8 +24,8 @@ use crate::foreign::{guarded, one_line};
 use crate::note::Note;
 use crate::raw::{Raw, RawColumn, within_limit};
 
-/// Even steps of a time base, packed as differences, take more than a byte for so many.
-const MOST_ROWS_PER_BYTE: u64 = 1000;
+/// Measured rows: one channel whose last bit is noise alone takes a byte for eight.
+const MOST_ROWS_PER_BYTE: u64 = 100;
 
 /// All columns of numbers of a file.
 pub(crate) fn read(bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
