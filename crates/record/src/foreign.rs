@@ -13,7 +13,7 @@ thread_local! {
 
 /// Calls a reader of another crate, whose panics become errors.
 ///
-/// Some checks of such readers are assertions: `parquet` 60 panics on one in 40 000 damaged files.
+/// Some checks of such readers are assertions: `parquet` 60 panics on one in 50 000 damaged files.
 /// Nothing that the call changes is seen after a panic but counters, so there is nothing to be left
 /// half done. The message of a panic is not printed, since what it says is in the error as far as
 /// it helps; the hook that prints it is the process's, so ours hands on every other panic.

@@ -5,6 +5,7 @@
 //! the first of them.
 
 mod pages;
+mod thrift;
 mod values;
 
 use std::sync::Arc;
@@ -30,6 +31,12 @@ const MOST_ROWS_PER_BYTE: u64 = 100;
 /// All columns of numbers of a file.
 pub(crate) fn read(bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
     let file = Arc::new(Bytes::from(bytes));
+    if !directory(&file).is_none_or(thrift::is_sound) {
+        return Err(FormatFault::Damaged {
+            what: "the directory of the file".to_owned(),
+            reason: "it claims more than it holds".to_owned(),
+        });
+    }
     let metadata = guarded("the directory of the file", || {
         ParquetMetaDataReader::new()
             .parse_and_finish(&*file)
@@ -60,6 +67,16 @@ pub(crate) fn read(bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Raw, FormatF
         }
     }
     Ok(raw)
+}
+
+/// The bytes before the last eight, which tell their number; `None` if the crate will say why not.
+fn directory(file: &[u8]) -> Option<&[u8]> {
+    let (rest, [a, b, c, d, b'P', b'A', b'R', b'1']) = file.split_last_chunk()? else {
+        return None;
+    };
+    let length = u32::from_le_bytes([*a, *b, *c, *d]);
+    let start = rest.len().checked_sub(usize::try_from(length).ok()?)?;
+    rest.get(start..)
 }
 
 /// Rows of all groups.
@@ -191,9 +208,13 @@ impl Source<'_> {
         let start = chunk.dictionary_page_offset();
         let start = start.unwrap_or_else(|| chunk.data_page_offset());
         let end = start.checked_add(chunk.compressed_size());
-        let within = |end: i64| usize::try_from(end).is_ok_and(|end| end <= self.file.len());
-        if start < 0 || chunk.compressed_size() < 0 || !end.is_some_and(within) {
-            return Err(broken("its bytes lie beyond the file"));
+        let bytes = end.and_then(|end| {
+            let (start, end) = (usize::try_from(start).ok()?, usize::try_from(end).ok()?);
+            self.file.get(start..end)
+        });
+        let bytes = bytes.ok_or_else(|| broken("its bytes lie beyond the file"))?;
+        if !thrift::are_sound(bytes) {
+            return Err(broken("its pages claim more than they hold"));
         }
         let plain = chunk.clone().into_builder();
         let plain = plain.set_compression_codec(CompressionCodec::UNCOMPRESSED);
