@@ -27,8 +27,9 @@ const MASS_KG: f64 = 24.0;
 const STIFFNESS_N_PER_M: f64 = 5270.0;
 const DAMPING_N_S_PER_M: f64 = 55.0;
 const FRICTION_FORCE_N: f64 = 7.0;
-/// White noise of the sensors.
-const NOISE_M: f64 = 4e-6;
+/// White noise of the position sensor: enough that the force between two samples, which no logger
+/// knows, does not show.
+const NOISE_M: f64 = 2e-5;
 
 const PROVENANCE: &str = "\
 The logger files of `docs/tutorial.md`: generated, not measured.
