@@ -114,7 +114,7 @@
         const to = Math.max(at(high), from + 2 * ratio);
         context.fillStyle = css("--shade");
         context.fillRect(from, top, to - from, height);
-        const text = clipped(context, span.label, 0.6 * width);
+        const text = clipped(context, span.label, 0.95 * width);
         const half = 0.5 * context.measureText(text).width;
         const centre = Math.min(Math.max(0.5 * (from + to), left + half), left + width - half);
         const row = rows.findIndex((r) => r.every(([a, b]) => centre + half < a || centre - half > b));
