@@ -10,13 +10,13 @@ use crate::diagnosis::{
 };
 use crate::evidence::probabilities;
 use crate::gap::{closed, predict, total};
+use crate::hypothesis::name;
 use crate::pipeline::Answer;
-use crate::search::name;
 use crate::stand_in::doubts;
 use crate::structure::describe;
 use crate::verdict::{
     CLOSES, CLOSES_BEYOND_RECALIBRATION, IMITATION_LEAVES, IMITATION_STANDS_OUT, INDISTINGUISHABLE,
-    Judged, STANDS_OUT,
+    Judged, STANDS_OUT, Swap,
 };
 
 /// A corrected gap below this share of the motion is good enough for any model.
@@ -32,6 +32,8 @@ const NOTHING_BUT_NOISE: f64 = 1.1;
 /// How often a name is right that beats its rivals by far, and one that may be a stand-in; on
 /// generated cases.
 const TRUST: [f64; 2] = [0.97, 0.8];
+/// Other kinds that are listed beside a named one.
+const MOST_RIVALS: usize = 2;
 /// Single effects whose gap on the check records is computed.
 const SHOWN: usize = 12;
 
@@ -201,33 +203,56 @@ fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
     sentences
 }
 
+/// The likeliest rivals that the data cannot tell from a named effect, of at most [`MOST_RIVALS`] kinds.
 fn rivals(answer: &Answer, judged: &Judged) -> Vec<Rival> {
-    let mut rivals: Vec<Rival> = Vec::new();
-    for swap in &judged.swaps {
-        let behind = answer.set.evidence - swap.evidence;
-        let as_likely = behind < INDISTINGUISHABLE;
-        // A clock that ticks in step with the motion: no data at this rate can tell, whatever the
-        // number of its parameters says.
-        let same_line = swap.placed.effect.clock().is_some() && swap.misfit < INDISTINGUISHABLE;
-        if !(as_likely || same_line) {
-            continue;
+    let swaps = judged.swaps.iter();
+    let mut close: Vec<&Swap> = swaps
+        .filter(|swap| is_as_likely(answer, swap) || is_same_line(swap))
+        .collect();
+    close.sort_by(|a, b| {
+        let by_fit = a.misfit.total_cmp(&b.misfit);
+        b.evidence.total_cmp(&a.evidence).then(by_fit)
+    });
+    let own = judged.placed.effect.kind();
+    let mut kinds = vec![own];
+    for swap in &close {
+        let kind = swap.placed.effect.kind();
+        if kinds.len() <= MOST_RIVALS && !kinds.contains(&kind) {
+            kinds.push(kind);
         }
-        rivals.push(Rival {
+    }
+    let kept = close.into_iter();
+    kept.filter(|swap| kinds.contains(&swap.placed.effect.kind()))
+        .map(|swap| Rival {
             kind: swap.placed.effect.kind().to_string(),
             at: swap.placed.at.clone(),
-            because: if !as_likely {
-                format!(
-                    "at this sample rate its line is where {} leaves one of this motion, and it fits as well",
-                    judged.placed.effect.kind()
-                )
-            } else { format!(
-                "in its place it fits the training records as well (log evidence {} by {:.1}, needed to tell them apart is {INDISTINGUISHABLE:.0})",
-                if behind >= 0.0 { "lower" } else { "higher" },
-                behind.abs()
-            ) },
-        });
+            because: because(answer, own, swap),
+        })
+        .collect()
+}
+
+fn is_as_likely(answer: &Answer, swap: &Swap) -> bool {
+    answer.set.evidence - swap.evidence < INDISTINGUISHABLE
+}
+
+/// A clock that ticks in step with the motion: no data at this rate can tell, whatever the number of
+/// its parameters says.
+fn is_same_line(swap: &Swap) -> bool {
+    swap.placed.effect.clock().is_some() && swap.misfit < INDISTINGUISHABLE
+}
+
+fn because(answer: &Answer, own: &str, swap: &Swap) -> String {
+    let behind = answer.set.evidence - swap.evidence;
+    if !is_as_likely(answer, swap) {
+        return format!(
+            "at this sample rate its line is where {own} leaves one of this motion, and it fits as well"
+        );
     }
-    rivals
+    format!(
+        "in its place it fits the training records as well (log evidence {} by {:.1}, needed to tell them apart is {INDISTINGUISHABLE:.0})",
+        if behind >= 0.0 { "lower" } else { "higher" },
+        behind.abs()
+    )
 }
 
 fn sentences(judged: &Judged) -> Vec<String> {

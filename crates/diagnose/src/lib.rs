@@ -57,6 +57,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod afar;
 mod answer;
 pub mod compare;
 mod data;
@@ -64,6 +65,7 @@ mod diagnosis;
 mod error;
 mod evidence;
 mod gap;
+mod hypothesis;
 mod locate;
 mod parity;
 mod pipeline;

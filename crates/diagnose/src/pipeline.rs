@@ -11,9 +11,10 @@ use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
+use crate::hypothesis::{Hypothesis, name, sort};
 use crate::locate::Located;
 use crate::remainder::{Remainder, remainder};
-use crate::search::{Hypothesis, Search, name};
+use crate::search::Search;
 use crate::verdict::{Judged, judge, prune, simplest};
 use crate::{DiagnoseError, answer, locate};
 
@@ -276,7 +277,7 @@ fn search(
             .par_iter()
             .map(|set| search.fit(&set.fit.estimate))
             .collect::<Result<Vec<_>, _>>()?;
-        crate::search::sort(&mut sets);
+        sort(&mut sets);
         Ok(sets)
     };
     let finalists = again(&pool[..pool.len().min(FINALISTS)])?;

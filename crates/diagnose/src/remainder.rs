@@ -18,7 +18,8 @@ use simgap_model::Location;
 
 use crate::diagnosis::Remains;
 use crate::gap::{noise_variance, stepped};
-use crate::search::{Hypothesis, Search};
+use crate::hypothesis::Hypothesis;
+use crate::search::Search;
 
 /// What a set leaves.
 pub(crate) struct Remainder {

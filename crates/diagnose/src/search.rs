@@ -4,17 +4,15 @@
 //! until a constant force is in the model too. So several sets of each size survive, every set is
 //! fitted on the full nonlinear simulation, and the next size starts from each survivor.
 
-use std::collections::BTreeSet;
-
 use rayon::prelude::*;
 use simgap_effects::{Family, LINES, Placed, SiteScale};
 use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
 };
-
 use simgap_model::Location;
 
 use crate::evidence::{effective_samples, evidence, freedom};
+use crate::hypothesis::{Hypothesis, add, name, pull, pull_of, same, sort, unique};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -25,8 +23,6 @@ const ROUGH_STEPS: usize = 3;
 const MOST_STEPS: usize = 10;
 /// Sets that are finished of those fitted roughly.
 const FINISHED: usize = 12;
-/// Prior of [`Weights::independent`] on nominal parameters.
-const NOMINAL_PRIOR: f64 = 0.02;
 /// A squared discrepancy within this factor of white noise leaves no room for a relevant effect; the
 /// estimate of the noise scatters by three percent.
 const NOTHING_LEFT: f64 = 1.06;
@@ -34,44 +30,6 @@ const NOTHING_LEFT: f64 = 1.06;
 const WISH: f64 = 4.0;
 /// Scores below this cannot reach the threshold of evidence after fitting.
 const HOPELESS: f64 = 1.0;
-
-/// A fitted set of effects.
-#[derive(Clone)]
-pub(crate) struct Hypothesis {
-    pub(crate) fit: Fit,
-    pub(crate) evidence: f64,
-}
-
-impl Hypothesis {
-    pub(crate) fn effects(&self) -> &[Placed] {
-        &self.fit.estimate.effects
-    }
-
-    /// The set, whatever the order in which its effects were found.
-    pub(crate) fn key(&self) -> Vec<String> {
-        let mut key: Vec<String> = self.effects().iter().map(name).collect();
-        key.sort();
-        key
-    }
-
-    /// Whether a candidate makes no sense beside the effects of the set: it is one of them, or one
-    /// contains the other at the same place.
-    fn rules_out(&self, candidate: &Candidate) -> bool {
-        self.effects().iter().any(|p| {
-            let related = candidate.effect.contains().contains(&p.effect.kind())
-                || p.effect.contains().contains(&candidate.effect.kind());
-            same(p, candidate) || (related && p.at == candidate.at)
-        })
-    }
-}
-
-pub(crate) fn name(placed: &Placed) -> String {
-    format!("{} {}", placed.effect.kind(), placed.at)
-}
-
-pub(crate) fn same(placed: &Placed, candidate: &Candidate) -> bool {
-    placed.effect.kind() == candidate.effect.kind() && placed.at == candidate.at
-}
 
 /// The search: its problem, weights and candidates.
 pub(crate) struct Search<'a> {
@@ -168,7 +126,7 @@ impl<'a> Search<'a> {
         self.fit_all(&starts, &linear)
     }
 
-    /// The sets in which one effect has grown into one that contains it.
+    /// The sets in which one effect has grown into one that contains it or turns into it.
     pub(crate) fn grow(
         &self,
         base: &Hypothesis,
@@ -217,7 +175,9 @@ impl<'a> Search<'a> {
     fn grown(&self, base: &Hypothesis, index: usize) -> Vec<Start> {
         let old = &base.effects()[index];
         let larger = self.candidates.iter().filter(|(candidate, _)| {
-            candidate.at == old.at && candidate.effect.contains().contains(&old.effect.kind())
+            let effect = candidate.effect;
+            let mut smaller = effect.contains().iter().chain(effect.turns_into());
+            candidate.at == old.at && smaller.any(|kind| *kind == old.effect.kind())
         });
         larger
             .flat_map(|(candidate, scale)| {
@@ -234,7 +194,11 @@ impl<'a> Search<'a> {
     /// Fits sets; of the same set from several starts the best stays. Best first.
     ///
     /// Many sets are first fitted roughly; only the best of them are worth the whole way.
-    fn fit_all(&self, starts: &[Start], base: &Base<'_>) -> Result<Vec<Hypothesis>, EstimateError> {
+    pub(crate) fn fit_all(
+        &self,
+        starts: &[Start],
+        base: &Base<'_>,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
         if starts.len() <= FINISHED {
             return self.fit_steps(starts, base, MOST_STEPS);
         }
@@ -249,7 +213,7 @@ impl<'a> Search<'a> {
         Ok(fitted)
     }
 
-    fn fit_steps(
+    pub(crate) fn fit_steps(
         &self,
         starts: &[Start],
         base: &Base<'_>,
@@ -344,6 +308,12 @@ impl<'a> Search<'a> {
     ) -> Result<Vec<Hypothesis>, EstimateError> {
         step("single effects");
         let mut pool = self.extend(base, FITTED[0])?;
+        if !pool.iter().any(|set| self.is_exhausted(set)) {
+            step("single effects from afar");
+            pool.extend(self.fit_from_afar(base)?);
+            sort(&mut pool);
+            unique(&mut pool);
+        }
         let mut front = pool.clone();
         for (size, survivors) in SURVIVORS.iter().enumerate() {
             if pool.iter().any(|set| self.is_exhausted(set)) {
@@ -371,62 +341,6 @@ impl<'a> Search<'a> {
         unique(&mut pool);
         Ok(pool)
     }
-}
-
-pub(crate) fn sort(hypotheses: &mut [Hypothesis]) {
-    hypotheses.sort_by(|a, b| {
-        b.evidence
-            .total_cmp(&a.evidence)
-            .then_with(|| a.key().cmp(&b.key()))
-    });
-}
-
-/// Keeps the first of each set.
-pub(crate) fn unique(hypotheses: &mut Vec<Hypothesis>) {
-    let mut seen = BTreeSet::new();
-    hypotheses.retain(|hypothesis| seen.insert(hypothesis.key()));
-}
-
-/// A start with one more effect. A nominal parameter that becomes an effect loses its prior.
-pub(crate) fn add(start: &Start, effect: Placed) -> Start {
-    let mut next = start.clone();
-    next.nominal.retain(|p| name(p) != name(&effect));
-    next.effects.push(effect);
-    next
-}
-
-/// A start without one of its effects. A nominal parameter gets its prior back, unless nominal
-/// parameters are held exactly.
-pub(crate) fn remove(start: &Start, index: usize) -> Start {
-    let mut next = start.clone();
-    let mut removed = next.effects.remove(index);
-    if removed.effect.family() == Family::NominalParameter && !next.nominal.is_empty() {
-        removed.values = neutral(&removed);
-        next.nominal.push(removed);
-    }
-    next
-}
-
-fn neutral(placed: &Placed) -> Vec<f64> {
-    placed
-        .effect
-        .parameters()
-        .iter()
-        .map(|p| p.neutral.unwrap_or(0.0))
-        .collect()
-}
-
-/// What the prior takes from the evidence of a set: half the squared deviations of the nominal
-/// parameters under it, in units of its standard deviation.
-pub(crate) fn pull(start: &Start) -> f64 {
-    start.nominal.iter().map(pull_of).sum()
-}
-
-fn pull_of(placed: &Placed) -> f64 {
-    let deviations = placed.values.iter();
-    deviations
-        .map(|v| 0.5 * ((v - 1.0) / NOMINAL_PRIOR).powi(2))
-        .sum()
 }
 
 /// Score of a nominal parameter that the fit already adjusts under its prior: freed, it gains what

@@ -6,7 +6,8 @@ use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_init
 use simgap_simulate::Run;
 
 use crate::evidence::{freedom, probabilities};
-use crate::search::{Hypothesis, Search, name, pull, remove, sort, unique};
+use crate::hypothesis::{Hypothesis, name, pull, remove, sort, unique};
+use crate::search::Search;
 
 /// Evidence an effect must bring beyond its own penalty. Calibrated on generated cases so that
 /// noise alone earns an effect in fewer than one case in twenty.
@@ -15,8 +16,11 @@ pub(crate) const EARNS: f64 = 6.0;
 /// integration of the nominal model is no better.
 pub(crate) const RELEVANT: f64 = 0.02;
 /// Smallest motion of an output, relative to its standard deviation, that counts as an effect:
-/// inputs known only at the samples leave the prediction uncertain by about a third of it.
+/// inputs known only at the samples leave the prediction uncertain by about half of it.
 pub(crate) const MOVES: f64 = 3e-3;
+/// Motion of an output, relative to its standard deviation, that a prediction may be off because inputs
+/// are known only at the samples: sets whose fits differ by less fit alike.
+const ACCURACY: f64 = 1.5e-3;
 /// A rival whose evidence is this close cannot be told from the named effect.
 pub(crate) const INDISTINGUISHABLE: f64 = 4.0;
 /// Share of the gap (above the noise floor) that a verdict must close, else the cause is unknown.
@@ -333,6 +337,7 @@ fn judge_once(
         rivals.extend(search.grow(set, i)?);
         for rival in &mut rivals {
             discount(search, set, rival);
+            level(search, set, rival);
         }
         rivals.retain(|rival| rival.key() != set.key());
         sort(&mut rivals);
@@ -394,6 +399,17 @@ fn discount(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
         rival.evidence = rival
             .evidence
             .min(set.evidence - search.penalty(rival, set));
+    }
+}
+
+/// A rival that fits as well or as badly as the set but for what a simulation may be off is judged by its
+/// number of parameters, and by how far it takes the nominal ones.
+fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
+    let variances = set.fit.variance.iter().zip(&rival.fit.variance);
+    let mut channels = variances.zip(search.problem.output_std());
+    if channels.all(|((own, its), std)| (own - its).abs().sqrt() < ACCURACY * std) {
+        let misfit = |set: &Hypothesis| set.fit.objective - pull(&set.fit.estimate);
+        rival.evidence += misfit(rival) - misfit(set);
     }
 }
 

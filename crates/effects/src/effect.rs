@@ -260,7 +260,14 @@ pub trait Effect: Sync + Send {
         &[]
     }
 
-    /// Starting values that grow out of the fitted values of a special case ([`Effect::contains`]).
+    /// Kinds at the same place that this one turns into where its dynamics are out of sight, and which
+    /// are found in its stead as long as a fit does not start near them.
+    fn turns_into(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Starting values that grow out of the fitted values of a special case ([`Effect::contains`]) or
+    /// of what it turns into ([`Effect::turns_into`]); none where these values are out of reach.
     fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         let _ = (values, scale);
         vec![]

@@ -356,6 +356,30 @@ fn verify_special_cases_are_in_the_catalogue_at_the_same_places() {
 }
 
 #[test]
+fn verify_what_dynamics_turn_into_lets_them_grow_at_the_same_place() {
+    let mut count = 0;
+    for effect in catalogue() {
+        for limit in effect.turns_into() {
+            let pair = format!("{} turns into {limit}", effect.kind());
+            let limit = simgap_effects::find(limit).unwrap_or_else(|| panic!("{pair}"));
+            let at = sites(&model(), effect.site());
+            let places = sites(&model(), limit.site());
+            assert!(at.iter().all(|at| places.contains(at)), "{pair}");
+            // One of a smaller and a larger value is in reach, the other is not.
+            let grown = [0.8, 1.25].map(|factor| effect.grown_from(&[factor], &scale()));
+            assert!(grown.iter().any(Vec::is_empty), "{pair}");
+            for values in grown.concat() {
+                let mut physical = values.clone();
+                effect.make_physical(&mut physical);
+                assert_eq!(physical, values, "{pair}");
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 0);
+}
+
+#[test]
 fn verify_every_kind_has_sites_and_survives_a_model_file() {
     let model = model();
     for &effect in catalogue() {

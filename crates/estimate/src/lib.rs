@@ -69,6 +69,7 @@ mod initial;
 mod layout;
 mod linearise;
 mod normal;
+mod outright;
 mod problem;
 mod score;
 mod site;
@@ -76,6 +77,7 @@ mod site;
 pub use fit::{Fit, Interval, fit};
 pub use initial::{fit_initial_states, simulator_at};
 pub use layout::{Candidate, Start};
+pub use outright::score_outright;
 pub use problem::{Problem, Weights};
 pub use score::{Base, Score, linearise_at, score};
 

@@ -26,22 +26,22 @@ use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
 const TRIAL: f64 = 0.02;
 /// Shapes that are simulated in one batch: their columns are as long as the records.
-const SHAPES_TOGETHER: usize = 8;
+pub(crate) const SHAPES_TOGETHER: usize = 8;
 /// Columns that keep less than this of their energy past the nuisance are explained by it.
 const HIDDEN: f64 = 1e-6;
 
 /// A fit, linearised once for the score of many effects.
 pub struct Base<'a> {
-    problem: &'a Problem,
-    fit: &'a Fit,
-    layout: Layout,
-    at: Linearised,
-    weights: Vec<f64>,
-    hessian: Mat<f64>,
-    gradient: Vec<f64>,
-    independent_samples: f64,
+    pub(crate) problem: &'a Problem,
+    pub(crate) fit: &'a Fit,
+    pub(crate) layout: Layout,
+    pub(crate) at: Linearised,
+    pub(crate) weights: Vec<f64>,
+    pub(crate) hessian: Mat<f64>,
+    pub(crate) gradient: Vec<f64>,
+    pub(crate) independent_samples: f64,
     /// rᵀWr of (2).
-    energy: f64,
+    pub(crate) energy: f64,
 }
 
 /// What a further effect would bring.
@@ -118,7 +118,7 @@ pub fn score(
 }
 
 /// An instance of a candidate, and the share of its starting values that it is.
-type Trial = (Vec<f64>, f64);
+pub(crate) type Trial = (Vec<f64>, f64);
 
 /// How the instances of a shape are scored.
 enum Way {
@@ -256,7 +256,7 @@ impl Base<'_> {
         Some(self.scored(candidate, values, energy))
     }
 
-    fn scored(&self, candidate: &Candidate, values: Vec<f64>, energy: f64) -> Score {
+    pub(crate) fn scored(&self, candidate: &Candidate, values: Vec<f64>, energy: f64) -> Score {
         let share = (energy / self.energy).clamp(0.0, 1.0 - 1e-9);
         Score {
             gain: -0.5 * self.independent_samples * (1.0 - share).ln(),
@@ -329,7 +329,7 @@ impl Base<'_> {
     }
 
     /// Change of the prediction of every run by each trial, divided by its share.
-    fn columns(
+    pub(crate) fn columns(
         &self,
         candidate: &Candidate,
         trials: &[Trial],
@@ -384,7 +384,7 @@ impl Base<'_> {
     }
 
     /// Solves (1): amplitudes and the energy bᵀâ they explain.
-    fn amplitudes(&self, columns: &[Vec<Signals>]) -> Option<(Vec<f64>, f64)> {
+    pub(crate) fn amplitudes(&self, columns: &[Vec<Signals>]) -> Option<(Vec<f64>, f64)> {
         let (k, len) = (columns.len(), self.layout.len());
         let mut cross = Mat::<f64>::zeros(len, k);
         let mut own = Mat::<f64>::zeros(k, k);
@@ -400,19 +400,7 @@ impl Base<'_> {
                 }
             }
         }
-        let ridged = Mat::from_fn(len, len, |i, j| {
-            let value = self.hessian[(i, j)];
-            if i == j {
-                value * (1.0 + 1e-10) + f64::MIN_POSITIVE
-            } else {
-                value
-            }
-        });
-        let projected = if len == 0 {
-            Mat::zeros(0, k)
-        } else {
-            ridged.full_piv_lu().solve(&cross)
-        };
+        let projected = self.past_nuisance(&cross);
         let free = Mat::from_fn(k, k, |i, j| {
             let taken: f64 = (0..len).map(|l| cross[(l, i)] * projected[(l, j)]).sum();
             let value = own[(i, j)] - taken;
@@ -435,5 +423,22 @@ impl Base<'_> {
         let amplitude: Vec<f64> = (0..k).map(|i| solution[(i, 0)]).collect();
         let energy = amplitude.iter().zip(&b).map(|(a, b)| a * b).sum();
         Some((amplitude, energy))
+    }
+
+    /// H⁻¹ times columns of JᵀW.
+    pub(crate) fn past_nuisance(&self, right: &Mat<f64>) -> Mat<f64> {
+        let len = self.layout.len();
+        if len == 0 {
+            return Mat::zeros(0, right.ncols());
+        }
+        let ridged = Mat::from_fn(len, len, |i, j| {
+            let value = self.hessian[(i, j)];
+            if i == j {
+                value * (1.0 + 1e-10) + f64::MIN_POSITIVE
+            } else {
+                value
+            }
+        });
+        ridged.full_piv_lu().solve(right)
     }
 }

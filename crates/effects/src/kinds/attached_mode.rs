@@ -24,6 +24,9 @@ pub(crate) struct AttachedMode;
 /// Name of the hidden mass.
 const NAME: &str = "(attached)";
 
+/// Natural frequencies tried at the most.
+const MOST_OCTAVES: i32 = 10;
+
 pub(super) fn unused_name(model: &Model, stem: &str) -> String {
     let taken = |name: &str| model.masses.iter().any(|mass| mass.name == name);
     let mut name = stem.to_string();
@@ -58,6 +61,15 @@ fn attach(model: &mut Model, at: &Location, [mass, freq_hz, damping_ratio]: [f64
         between,
         damping: 2.0 * damping_ratio * mass * omega,
     });
+}
+
+/// Natural frequencies half an octave apart, from the strongest line of the motion upwards as far as
+/// the sample rate goes.
+pub(super) fn octaves(scale: &SiteScale) -> impl Iterator<Item = f64> + use<> {
+    let first = scale.motion_hz[0].max(2.0 / scale.duration_s);
+    let nyquist = 0.5 / scale.time_step_s;
+    let each = (0..MOST_OCTAVES).map(move |i| first * 2.0_f64.powf(0.5 * f64::from(i)));
+    each.take_while(move |freq| *freq < nyquist)
 }
 
 impl Effect for AttachedMode {
@@ -126,6 +138,21 @@ impl Effect for AttachedMode {
             }
         }
         starts
+    }
+
+    fn turns_into(&self) -> &'static [&'static str] {
+        &["mass_error"]
+    }
+
+    /// A factor q on the host is a mass m (q − 1) that moves with it.
+    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        let added = (values[0] - 1.0) * scale.mass_kg;
+        if !(added > 0.0 && added.is_finite()) {
+            return vec![];
+        }
+        octaves(scale)
+            .flat_map(|freq| [0.02, 0.15].map(|ratio| vec![added, freq, ratio, 0.0, 0.0]))
+            .collect()
     }
 
     fn action(&self, values: &[f64]) -> Action {

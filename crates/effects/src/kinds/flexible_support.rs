@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Damper, GROUND, Location, Mass, Model, Spring, same_pair};
 
-use super::attached_mode::unused_name;
+use super::attached_mode::{octaves, unused_name};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// What the model takes for the ground gives way: the springs and dampers between a mass and the
@@ -128,6 +128,24 @@ impl Effect for FlexibleSupport {
             }
         }
         starts
+    }
+
+    fn turns_into(&self) -> &'static [&'static str] {
+        &["stiffness_error"]
+    }
+
+    /// A factor q on the spring is a massless support of stiffness k q/(1 − q) behind it.
+    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        let factor = values[0];
+        if !(factor > 0.0 && factor < 1.0) {
+            return vec![];
+        }
+        let own = scale.stiffness_n_per_m;
+        let stiffness = own * factor / (1.0 - factor);
+        let mass = |freq: f64| (own + stiffness) / (TAU * freq).powi(2);
+        octaves(scale)
+            .flat_map(|freq| [0.05, 0.2].map(|ratio| vec![stiffness, mass(freq), ratio, 0.0, 0.0]))
+            .collect()
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -1,0 +1,126 @@
+//! Single effects fitted from afar.
+//!
+//! Where no single effect explains a gap, it may be that the right one was fitted from the wrong side of
+//! a ridge. Effects with a shape are then simulated at many values, spread over two decades about
+//! their starting values, and fitted from the best of them.
+
+use rayon::prelude::*;
+use simgap_effects::{Effect, Family, SiteScale};
+use simgap_estimate::{Candidate, EstimateError, Score, Start, linearise_at, score_outright};
+
+use crate::hypothesis::{Hypothesis, add, name, sort};
+use crate::search::Search;
+
+/// Values tried of each effect at each place.
+const POINTS: usize = 48;
+/// Values lie within this factor of the starting values.
+const SPREAD: f64 = 10.0;
+/// Sets fitted, and from how many values of each.
+const FITTED: usize = 12;
+const STARTS_OF_EACH: usize = 2;
+/// Sets of these that are finished, and in how many steps: from afar it takes more.
+const FINISHED: usize = 3;
+const STEPS: usize = 30;
+/// Bases of the low-discrepancy sequence.
+const PRIMES: [usize; 6] = [2, 3, 5, 7, 11, 13];
+
+impl Search<'_> {
+    /// Every single effect with a shape, fitted from the best of many values. Best first.
+    pub(crate) fn fit_from_afar(
+        &self,
+        base: &Hypothesis,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
+        let shaped = self
+            .candidates
+            .par_iter()
+            .filter(|(c, _)| has_shape(c.effect));
+        let scored = shaped
+            .map(|(candidate, scale)| {
+                let points = points(candidate, scale);
+                let mut best = score_outright(&linear, candidate, &points).unwrap_or_default();
+                best.truncate(STARTS_OF_EACH);
+                best
+            })
+            .collect::<Vec<_>>();
+        let mut best: Vec<Score> = scored.into_iter().flatten().collect();
+        best.sort_by(|a, b| {
+            b.gain
+                .total_cmp(&a.gain)
+                .then_with(|| name(&a.start).cmp(&name(&b.start)))
+        });
+        best.truncate(FITTED);
+        let starts: Vec<Start> = best
+            .into_iter()
+            .map(|score| add(&base.fit.estimate, score.start))
+            .collect();
+        let mut fitted = self.fit_all(&starts, &linear)?;
+        let promising: Vec<Start> = fitted
+            .drain(..fitted.len().min(FINISHED))
+            .map(|set| set.fit.estimate)
+            .collect();
+        fitted.extend(self.fit_steps(&promising, &linear, STEPS)?);
+        sort(&mut fitted);
+        Ok(fitted)
+    }
+}
+
+/// Whether an effect of the machine has, besides its size, values that shape it.
+fn has_shape(effect: &dyn Effect) -> bool {
+    let parameters = effect.parameters();
+    let shared = parameters.iter().filter(|p| !p.per_record);
+    matches!(effect.family(), Family::Force | Family::Dynamics)
+        && effect.clock().is_none()
+        && shared.clone().count() > 1
+        && shared
+            .clone()
+            .any(|p| p.neutral.is_none_or(f64::is_infinite))
+}
+
+/// Values about each start of an effect in turn, by a low-discrepancy sequence in their logarithms.
+fn points(candidate: &Candidate, scale: &SiteScale) -> Vec<Vec<f64>> {
+    let parameters = candidate.effect.parameters();
+    let starts = candidate.effect.starts(scale);
+    let moved = |i: usize, start: &[f64]| {
+        let values = parameters.iter().zip(start).enumerate();
+        let mut values: Vec<f64> = values
+            .map(|(k, (parameter, value))| {
+                if parameter.per_record {
+                    return *value;
+                }
+                let share = radical_inverse(i + 1, PRIMES[k % PRIMES.len()]);
+                let moved = value * SPREAD.powf(2.0 * share - 1.0);
+                moved.clamp(parameter.lower, parameter.upper)
+            })
+            .collect();
+        candidate.effect.make_physical(&mut values);
+        values
+    };
+    let each = starts
+        .iter()
+        .cycle()
+        .take(if starts.is_empty() { 0 } else { POINTS });
+    each.enumerate().map(|(i, start)| moved(i, start)).collect()
+}
+
+/// The digits of a number in a base, mirrored at the point: evenly spread over 0 to 1.
+fn radical_inverse(mut number: usize, base: usize) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0);
+    while number > 0 {
+        digit /= base as f64;
+        value += digit * (number % base) as f64;
+        number /= base;
+    }
+    value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_radical_inverses() {
+        let found: Vec<f64> = (1..5).map(|i| radical_inverse(i, 2)).collect();
+        assert_eq!(found, [0.5, 0.25, 0.75, 0.125]);
+    }
+}

@@ -1,0 +1,103 @@
+//! A fitted set of effects, and what is put into its start or taken out of it.
+
+use std::collections::BTreeSet;
+
+use simgap_effects::{Family, Placed};
+use simgap_estimate::{Candidate, Fit, Start};
+
+/// Prior of [`Weights::independent`](simgap_estimate::Weights::independent) on nominal parameters.
+pub(crate) const NOMINAL_PRIOR: f64 = 0.02;
+
+/// A fitted set of effects.
+#[derive(Clone)]
+pub(crate) struct Hypothesis {
+    pub(crate) fit: Fit,
+    pub(crate) evidence: f64,
+}
+
+impl Hypothesis {
+    pub(crate) fn effects(&self) -> &[Placed] {
+        &self.fit.estimate.effects
+    }
+
+    /// The set, whatever the order in which its effects were found.
+    pub(crate) fn key(&self) -> Vec<String> {
+        let mut key: Vec<String> = self.effects().iter().map(name).collect();
+        key.sort();
+        key
+    }
+
+    /// Whether a candidate makes no sense beside the effects of the set: it is one of them, or one
+    /// contains the other at the same place.
+    pub(crate) fn rules_out(&self, candidate: &Candidate) -> bool {
+        self.effects().iter().any(|p| {
+            let related = candidate.effect.contains().contains(&p.effect.kind())
+                || p.effect.contains().contains(&candidate.effect.kind());
+            same(p, candidate) || (related && p.at == candidate.at)
+        })
+    }
+}
+
+pub(crate) fn name(placed: &Placed) -> String {
+    format!("{} {}", placed.effect.kind(), placed.at)
+}
+
+pub(crate) fn same(placed: &Placed, candidate: &Candidate) -> bool {
+    placed.effect.kind() == candidate.effect.kind() && placed.at == candidate.at
+}
+
+pub(crate) fn sort(hypotheses: &mut [Hypothesis]) {
+    hypotheses.sort_by(|a, b| {
+        b.evidence
+            .total_cmp(&a.evidence)
+            .then_with(|| a.key().cmp(&b.key()))
+    });
+}
+
+/// Keeps the first of each set.
+pub(crate) fn unique(hypotheses: &mut Vec<Hypothesis>) {
+    let mut seen = BTreeSet::new();
+    hypotheses.retain(|hypothesis| seen.insert(hypothesis.key()));
+}
+
+/// A start with one more effect. A nominal parameter that becomes an effect loses its prior.
+pub(crate) fn add(start: &Start, effect: Placed) -> Start {
+    let mut next = start.clone();
+    next.nominal.retain(|p| name(p) != name(&effect));
+    next.effects.push(effect);
+    next
+}
+
+/// A start without one of its effects. A nominal parameter gets its prior back, unless nominal
+/// parameters are held exactly.
+pub(crate) fn remove(start: &Start, index: usize) -> Start {
+    let mut next = start.clone();
+    let mut removed = next.effects.remove(index);
+    if removed.effect.family() == Family::NominalParameter && !next.nominal.is_empty() {
+        removed.values = neutral(&removed);
+        next.nominal.push(removed);
+    }
+    next
+}
+
+fn neutral(placed: &Placed) -> Vec<f64> {
+    placed
+        .effect
+        .parameters()
+        .iter()
+        .map(|p| p.neutral.unwrap_or(0.0))
+        .collect()
+}
+
+/// What the prior takes from the evidence of a set: half the squared deviations of the nominal
+/// parameters under it, in units of its standard deviation.
+pub(crate) fn pull(start: &Start) -> f64 {
+    start.nominal.iter().map(pull_of).sum()
+}
+
+pub(crate) fn pull_of(placed: &Placed) -> f64 {
+    let deviations = placed.values.iter();
+    deviations
+        .map(|v| 0.5 * ((v - 1.0) / NOMINAL_PRIOR).powi(2))
+        .sum()
+}
