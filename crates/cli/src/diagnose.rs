@@ -238,7 +238,7 @@ pub(crate) fn write(
     let report = report(&ReportInput {
         diagnosis: &outcome.diagnosis,
         series: &outcome.series,
-        motions: &[],
+        motions: &outcome.motions,
         nominal: Some(model),
         corrected: Some(&outcome.corrected),
         context,

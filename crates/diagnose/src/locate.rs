@@ -5,9 +5,8 @@ use simgap_estimate::{EstimateError, Problem};
 use simgap_model::{Location, undamped_modes};
 use simgap_signal::spectrum::Psd;
 use simgap_signal::welch::welch;
-use simgap_simulate::MemberPath;
 
-use crate::diagnosis::{BandShare, ChannelShare, RecordShare, StateShare, TimeShare};
+use crate::diagnosis::{BandShare, ChannelShare, PlaceMotion, RecordShare, StateShare, TimeShare};
 use crate::gap::Prediction;
 use crate::structure::welch_options;
 
@@ -309,33 +308,49 @@ fn label(marks: &Marks, freq_hz: f64, half_bin: f64) -> String {
     format!("around {freq_hz:.4} Hz")
 }
 
-/// Regions of motion where the discrepancy gathers, over the nominal motion across each place.
-pub(crate) fn states(
-    located: &Located<'_>,
+/// The nominal motion across each place along each check record, the places in turn.
+pub(crate) fn motions(
+    check: &Problem,
+    prediction: &Prediction,
     places: &[Location],
-) -> Result<Vec<StateShare>, EstimateError> {
-    let (check, prediction) = (located.check, located.prediction);
-    let energy = energy(located);
+) -> Result<Vec<PlaceMotion>, EstimateError> {
     let simulator = check.simulator(&[], 0)?;
     let mut list = Vec::new();
     for place in places {
-        let mut path = MemberPath::default();
         for (run, initial) in check.runs.iter().zip(&prediction.initial) {
-            let one = simulator.path(run, initial, place)?;
-            path.displacement.extend(one.displacement);
-            path.velocity.extend(one.velocity);
+            let path = simulator.path(run, initial, place)?;
+            list.push(PlaceMotion {
+                record: run.name.clone(),
+                at: place.clone(),
+                displacement: path.displacement,
+                velocity: path.velocity,
+            });
         }
+    }
+    Ok(list)
+}
+
+/// Regions of motion where the discrepancy gathers, over the nominal motion across each place.
+pub(crate) fn states(located: &Located<'_>, motions: &[PlaceMotion]) -> Vec<StateShare> {
+    let flat: Vec<f64> = energy(located).concat();
+    let mut list = Vec::new();
+    for group in motions.chunk_by(|a, b| a.at == b.at) {
+        let place = &group[0].at;
+        let join = |of: fn(&PlaceMotion) -> &Vec<f64>| -> Vec<f64> {
+            group.iter().flat_map(of).copied().collect()
+        };
+        let displacement = join(|motion| &motion.displacement);
+        let velocity = join(|motion| &motion.velocity);
         let name = match place {
             Location::Between([a, b]) if b == simgap_model::GROUND => a.clone(),
             Location::Between([a, b]) if a == simgap_model::GROUND => b.clone(),
             Location::Between([a, b]) => format!("{a} to {b}"),
             Location::Mass(name) | Location::Input(name) | Location::Channel(name) => name.clone(),
         };
-        let flat: Vec<f64> = energy.iter().flatten().copied().collect();
-        list.extend(regions(&flat, "velocity", &path.velocity, &name));
-        list.extend(regions(&flat, "displacement", &path.displacement, &name));
+        list.extend(regions(&flat, "velocity", &velocity, &name));
+        list.extend(regions(&flat, "displacement", &displacement, &name));
     }
-    Ok(ranked(list))
+    ranked(list)
 }
 
 /// What gathers where the motion seldom is comes first.

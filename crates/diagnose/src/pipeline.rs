@@ -8,7 +8,7 @@ use simgap_record::{Defect, QualityFinding, Record};
 use simgap_simulate::substeps_for;
 
 use crate::data::{Data, divide, excerpts};
-use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Where};
+use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
 use crate::hypothesis::{Hypothesis, name, sort};
@@ -58,6 +58,8 @@ pub struct Outcome {
     pub corrected: Model,
     /// Predictions of the check records.
     pub series: Vec<CheckSeries>,
+    /// The motion across each member along the check records.
+    pub motions: Vec<PlaceMotion>,
 }
 
 /// The best set found, as judged in the search, and what it is compared with.
@@ -158,15 +160,15 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         let short = check.with_runs(excerpts(&check.runs));
         answer::candidates(&short, &answer, &verdict, &plain)?
     };
-    let places = locate_places(request.model);
     let floors: Vec<f64> = gap.channels.iter().map(|c| c.noise_floor).collect();
     let located = Located::new(&check, &predictions[0], &floors);
+    let motions = locate::motions(&check, &predictions[0], &locate_places(request.model))?;
     let r#where = Where {
         channels: locate::channels(&located),
         locations: answer::locations(&answer, left_unknown),
         bands: locate::bands(&located),
         times: locate::times(&located),
-        states: locate::states(&located, &places)?,
+        states: locate::states(&located, &motions),
         records: locate::records(&located),
     };
     let mut notes = notes(request, &data);
@@ -189,6 +191,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         },
         corrected: corrected_model(request.model, &placed),
         series: series(&check, &data, &predictions[0], &predictions[shown]),
+        motions,
     })
 }
 
