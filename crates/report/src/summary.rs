@@ -4,7 +4,7 @@ use simgap_diagnose::{Diagnosis, Status};
 use simgap_model::Location;
 
 use crate::number::{percent, ratio};
-use crate::wording::{effect_at, headline, particulars, sentence};
+use crate::wording::{effect_at, headline, particulars, plain, sentence};
 
 /// Columns of text.
 const WIDTH: usize = 96;
@@ -91,7 +91,7 @@ pub fn summary_text(diagnosis: &Diagnosis, styles: Styles) -> String {
     rivals(&mut out, diagnosis);
     out.named("next", &next(diagnosis));
     for (i, note) in diagnosis.notes.iter().take(FEW).enumerate() {
-        out.named(if i == 0 { "notes" } else { "" }, &sentence(note));
+        out.named(if i == 0 { "notes" } else { "" }, &sentence(&plain(note)));
     }
     if diagnosis.notes.len() > FEW {
         out.named(
@@ -125,7 +125,7 @@ fn gap(out: &mut Lines, diagnosis: &Diagnosis) {
 /// What to do now.
 fn next(diagnosis: &Diagnosis) -> String {
     match (&diagnosis.next_experiment, diagnosis.verdict.status) {
-        (Some(experiment), _) => sentence(experiment),
+        (Some(experiment), _) => sentence(&plain(experiment)),
         (None, Status::None) => "Nothing: these records ask no more of the model.".to_owned(),
         (None, Status::Unknown) => "See in the report where the gap lies.".to_owned(),
         (None, Status::Parameters | Status::Effect) => {

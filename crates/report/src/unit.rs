@@ -143,6 +143,7 @@ pub(crate) fn estimate(parameter: &NamedParameter, unit: &str) -> Estimate {
     };
     let resolution = resolution.min(decimal_exponent(value) - 1);
     let space = if unit.is_empty() { "" } else { "\u{a0}" };
+    let unit = unit.replace(' ', "\u{a0}");
     let figure = |v: f64| at_resolution(v * factor, resolution);
     let interval = match (low.is_finite(), high.is_finite()) {
         (true, true) => format!("{} to {}{space}{unit}", figure(low), figure(high)),

@@ -22,7 +22,7 @@ pub(super) fn first_screen(
     unit_at: &dyn Fn(&Location) -> String,
 ) -> Result<(), ReportError> {
     let waterfall = waterfall(diagnosis)?;
-    html.within("div", &[("class", "pair first")], |html| {
+    html.within("div", &[("class", "pair first stack")], |html| {
         html.within("div", &[], |html| {
             for line in particulars(diagnosis, unit_at) {
                 html.element("p", &[("class", "lead")], &line);

@@ -89,7 +89,8 @@ pub(super) fn quality(html: &mut Html, diagnosis: &Diagnosis) {
         let clean = "The checks of the records found nothing worth a note.";
         html.element("p", &[], clean);
     } else {
-        list(html, &diagnosis.notes);
+        let notes: Vec<String> = diagnosis.notes.iter().map(|n| plain(n)).collect();
+        list(html, &notes);
     }
 }
 

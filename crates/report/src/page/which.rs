@@ -45,7 +45,7 @@ pub(super) fn which(
         ),
         Status::Parameters | Status::Effect => {}
     }
-    html.within("div", &[("class", "pair")], |html| {
+    html.within("div", &[("class", "pair stack")], |html| {
         ranking(html, files, diagnosis)?;
         html.within("div", &[], |html| {
             for effect in &diagnosis.verdict.effects {
