@@ -92,11 +92,12 @@ mod tests {
     fn verify_slopes_are_exact_on_straight_lines_and_near_on_sines() {
         let line: Vec<f64> = (0..40).map(|i| 3.0 - 0.5 * f64::from(i)).collect();
         assert!(slope(&line, 4, 0.1).iter().all(|v| (v + 5.0).abs() < 1e-12));
-        // Over ± m samples of phase w the slope of a sine is too small by (m w)² / 10 at most.
+        // Σ k⁴ / (6 Σ k²) over ± m: the slope of a sine of phase w is too small by so much of w².
         let (m, w) = (4, 0.05);
         let sine: Vec<f64> = (0..400).map(|i| (w * f64::from(i)).sin()).collect();
         let found = slope(&sine, m, 1.0);
-        let bound = (m as f64 * w).powi(2) / 10.0 * 1.1;
+        let k = m as f64;
+        let bound = (3.0 * k * k + 3.0 * k - 1.0) / 30.0 * w * w;
         for (i, v) in found.iter().enumerate().skip(m).take(400 - 2 * m) {
             let truth = w * (w * i as f64).cos();
             assert!((v - truth).abs() < bound * w, "{i}: {v} {truth}");
