@@ -1,0 +1,144 @@
+//! A plant of two masses whose records are made four times finer than they are stored.
+
+use simgap_diagnose::{Outcome, Request, diagnose};
+use simgap_effects::{Placed, find};
+use simgap_model::{Location, Model};
+use simgap_record::{Channel, Record};
+use simgap_simulate::{Run, Simulator};
+
+const FINER: usize = 4;
+/// Noise over the spread of a channel.
+const NOISE: f64 = 0.01;
+
+const PLANT: &str = r#"schema = "simgap-model/1"
+name = "two masses"
+[[mass]]
+name = "base"
+value = 2.0
+[[mass]]
+name = "top"
+value = 0.7
+[[spring]]
+name = "k1"
+between = ["base", "ground"]
+stiffness = 4000.0
+[[spring]]
+name = "k2"
+between = ["top", "base"]
+stiffness = 2500.0
+[[damper]]
+name = "c1"
+between = ["base", "ground"]
+damping = 9.0
+[[damper]]
+name = "c2"
+between = ["top", "base"]
+damping = 5.0
+[[input]]
+channel = "u"
+kind = "force"
+at = "base"
+[[input]]
+channel = "spare"
+kind = "force"
+at = "top"
+[[output]]
+channel = "x"
+kind = "displacement"
+at = "base"
+[[output]]
+channel = "a"
+kind = "acceleration"
+at = "top"
+"#;
+
+pub(crate) fn plant() -> Model {
+    Model::from_toml(PLANT).unwrap()
+}
+
+pub(crate) fn ground() -> Location {
+    Location::Between(["base".into(), "ground".into()])
+}
+
+pub(crate) fn placed(kind: &str, at: Location, values: &[f64]) -> Placed {
+    Placed::new(find(kind).unwrap(), at, values.to_vec())
+}
+
+/// Numbers of zero mean and unit variance, about normal: twelve draws by splitmix64 each.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        let draw = |_| {
+            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut z = self.0;
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(draw).sum::<f64>() - 6.0
+    }
+}
+
+/// Lines between 1 and 14 Hz, other phases for each record; the spare input is silent.
+fn drive(t: f64, number: f64) -> f64 {
+    let lines = [1.3, 2.9, 4.7, 6.1, 7.9, 10.3, 13.7];
+    let line = |(k, f): (usize, f64)| {
+        let phase = 2.1 * number + 1.7 * (k * k) as f64;
+        (std::f64::consts::TAU * f * t + phase).sin()
+    };
+    8.0 * lines.into_iter().enumerate().map(line).sum::<f64>()
+}
+
+/// A record of a machine that is the plant with effects, by its number.
+pub(crate) fn record(effects: &[Placed], number: u64, rows: usize, step_s: f64) -> Record {
+    let model = plant();
+    let fine = rows * FINER;
+    let step = step_s / FINER as f64;
+    let input: Vec<f64> = (0..fine)
+        .map(|n| drive(n as f64 * step, number as f64))
+        .collect();
+    let run = Run {
+        name: "machine".into(),
+        start_s: 0.0,
+        time_step_s: step,
+        len: fine,
+        first_index: 0,
+        inputs: vec![input.clone(), vec![0.0; fine]],
+        measured: vec![],
+    };
+    let simulator = Simulator::new(&model, effects, 1).unwrap();
+    let outputs = simulator.predict(&run, &[0.0; 4]).unwrap();
+    let mut noise = Noise(1000 + number);
+    let stored = |signal: &[f64]| -> Vec<f64> { signal.iter().copied().step_by(FINER).collect() };
+    let mut channels = vec![
+        Channel::new("u", "N", stored(&input)),
+        Channel::new("spare", "N", vec![0.0; rows]),
+    ];
+    for (signal, (name, unit)) in outputs.iter().zip([("x", "m"), ("a", "m/s^2")]) {
+        let clean = stored(signal);
+        let spread = (clean.iter().map(|y| y * y).sum::<f64>() / rows as f64).sqrt();
+        let noisy = clean.iter().map(|y| y + NOISE * spread * noise.next());
+        channels.push(Channel::new(name, unit, noisy.collect()));
+    }
+    Record::from_uniform(format!("{number}.csv"), 0.0, step_s, channels).unwrap()
+}
+
+/// Diagnoses two records of a machine, checked on a third.
+pub(crate) fn diagnosed(effects: &[Placed], withheld: &[&str]) -> Outcome {
+    let records: Vec<Record> = (1..4).map(|k| record(effects, k, 2500, 4e-3)).collect();
+    let withheld: Vec<String> = withheld.iter().map(ToString::to_string).collect();
+    let request = Request {
+        model: &plant(),
+        train: &records[..2],
+        check: &records[2..],
+        withheld: &withheld,
+    };
+    diagnose(&request, &|_| {}).unwrap()
+}
+
+/// Kinds and places that are named.
+pub(crate) fn named(outcome: &Outcome) -> Vec<(String, Location)> {
+    let effects = outcome.diagnosis.verdict.effects.iter();
+    effects.map(|e| (e.kind.clone(), e.at.clone())).collect()
+}

@@ -1,0 +1,106 @@
+//! What users of grey-box tools have been misled by, each on records made for it.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use common::{diagnosed, ground, named, placed};
+use simgap_diagnose::Status;
+use simgap_model::Location;
+
+fn channel(name: &str) -> Location {
+    Location::Channel(name.into())
+}
+
+/// An input that is silent can be wrong in any way without a trace: nothing at it may be named, or hold
+/// any probability, or bring a figure that is no number.
+#[test]
+fn verify_a_candidate_that_changes_nothing_is_no_candidate() {
+    let truth = [placed("cubic_stiffness", ground(), &[2e7])];
+    let outcome = diagnosed(&truth, &[]);
+    assert_eq!(named(&outcome), [("cubic_stiffness".into(), ground())]);
+    let spare = Location::Input("spare".into());
+    for candidate in &outcome.diagnosis.candidates {
+        assert!(candidate.held_back_gap.is_finite(), "{}", candidate.kind);
+        assert!(candidate.at != spare || candidate.probability == 0.0);
+    }
+    let effects = &outcome.diagnosis.verdict.effects;
+    let intervals = effects.iter().flat_map(|effect| &effect.parameters);
+    for end in intervals.flat_map(|parameter| parameter.ci95) {
+        assert!(end.is_finite(), "{effects:?}");
+    }
+}
+
+#[test]
+fn verify_a_delay_is_put_on_the_channel_that_is_late() {
+    for (name, other) in [("x", "a"), ("a", "x")] {
+        let truth = [placed("sensor_delay", channel(name), &[0.0031])];
+        let outcome = diagnosed(&truth, &[]);
+        let found = named(&outcome);
+        assert_eq!(found, [("sensor_delay".to_string(), channel(name))]);
+        let effect = &outcome.diagnosis.verdict.effects[0];
+        let delay = effect.parameters[0].value;
+        assert!((delay - 0.0031).abs() < 2e-4, "{delay}");
+        let rivals = effect.indistinguishable.iter();
+        let wrong = rivals.filter(|rival| rival.at == channel(other)).count();
+        assert_eq!(wrong, 0, "the other channel is no rival");
+    }
+}
+
+#[test]
+fn verify_a_hidden_mode_is_not_taken_for_delay_and_damping() {
+    let at = Location::Mass("base".into());
+    let truth = [placed(
+        "attached_mode",
+        at.clone(),
+        &[0.25, 9.0, 0.03, 0.0, 0.0],
+    )];
+    let outcome = diagnosed(&truth, &[]);
+    assert_eq!(named(&outcome), [("attached_mode".into(), at)]);
+    let values = &outcome.diagnosis.verdict.effects[0].parameters;
+    assert!((values[0].value / 0.25 - 1.0).abs() < 0.05, "{values:?}");
+    assert!((values[1].value / 9.0 - 1.0).abs() < 0.01, "{values:?}");
+    let gap = &outcome.diagnosis.gap;
+    assert!(gap.corrected < 1.1 * gap.noise_floor, "{gap:?}");
+}
+
+/// A gain can be swallowed by masses, stiffnesses and dampings together. They stay where they are.
+#[test]
+fn verify_a_gain_is_not_swallowed_by_parameters() {
+    let truth = [placed("sensor_gain", channel("x"), &[1.06])];
+    let outcome = diagnosed(&truth, &[]);
+    assert_eq!(named(&outcome), [("sensor_gain".into(), channel("x"))]);
+    let gain = outcome.diagnosis.verdict.effects[0].parameters[0].value;
+    assert!((gain - 1.06).abs() < 0.01, "{gain}");
+    let nominal = common::plant();
+    let masses = nominal.masses.iter().zip(&outcome.corrected.masses);
+    for (given, found) in masses {
+        assert!((found.value / given.value - 1.0).abs() < 0.02);
+    }
+}
+
+/// With the true law out of the catalogue a familiar one may fit well. It is not named as if it were
+/// the cause.
+#[test]
+fn verify_a_wrong_law_that_fits_is_told_as_such() {
+    let truth = [placed("quadratic_damping", ground(), &[250.0])];
+    let known = diagnosed(&truth, &[]);
+    assert_eq!(named(&known), [("quadratic_damping".into(), ground())]);
+    let outcome = diagnosed(&truth, &["quadratic_damping"]);
+    let verdict = &outcome.diagnosis.verdict;
+    let honest =
+        verdict.status == Status::Unknown || verdict.effects.iter().any(|effect| effect.stand_in);
+    assert!(honest, "{verdict:?}");
+}
+
+#[test]
+fn verify_two_runs_are_the_same_to_the_last_digit() {
+    let truth = [placed("backlash", ground(), &[4e-4])];
+    let told = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let outcome = pool.build().unwrap().install(|| diagnosed(&truth, &[]));
+        serde_json::to_string(&outcome.diagnosis).unwrap()
+    };
+    let first = told(1);
+    assert!(first == told(3), "other numbers of threads");
+    assert!(first == told(3), "another run");
+}
