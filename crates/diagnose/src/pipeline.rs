@@ -265,7 +265,12 @@ fn search(
     // The search, with the colour of the discrepancy as known before it.
     let weights = colour(recalibrated);
     let baseline = fit(&short, &first, &weights)?;
-    let mut search = Search::new(&short, weights, (nominal, &baseline), request.withheld)?;
+    let mut search = Search::new(
+        &short,
+        weights,
+        [nominal, recalibrated, &baseline],
+        request.withheld,
+    )?;
     let base = search.fit(&first)?;
     let pool = match scope {
         Scope::Everything => search.run(&base, progress)?,

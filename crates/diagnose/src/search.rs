@@ -28,6 +28,9 @@ const FINISHED: usize = 12;
 const NOTHING_LEFT: f64 = 1.06;
 /// Pull of the prior above which a nominal parameter may have to be named.
 const WISH: f64 = 4.0;
+/// Where parameters alone close more than all but this part of a gap, the rest counts as if it were the
+/// gap's tenth: what they leave may have a cause of its own.
+const PARAMETERS_APART: f64 = 10.0;
 /// Scores below this cannot reach the threshold of evidence after fitting.
 const HOPELESS: f64 = 1.0;
 
@@ -37,7 +40,8 @@ pub(crate) struct Search<'a> {
     pub(crate) weights: Weights,
     pub(crate) candidates: Vec<(Candidate, SiteScale)>,
     pub(crate) effective_samples: f64,
-    /// rms of the discrepancy of the model as given for each channel, at most that of the motion.
+    /// rms of the discrepancy of the model as given for each channel, at most that of the motion, and
+    /// a multiple of what re-estimated parameters leave.
     pub(crate) gap: Vec<f64>,
 }
 
@@ -46,7 +50,7 @@ impl<'a> Search<'a> {
     pub(crate) fn new(
         problem: &'a Problem,
         weights: Weights,
-        (nominal, baseline): (&Fit, &Fit),
+        [nominal, recalibrated, baseline]: [&Fit; 3],
         withheld: &[String],
     ) -> Result<Search<'a>, EstimateError> {
         let mut scales: Vec<(Location, SiteScale)> = vec![];
@@ -68,14 +72,18 @@ impl<'a> Search<'a> {
             })
             .collect::<Result<Vec<_>, EstimateError>>()?;
         let effective_samples = effective_samples(problem, &weights);
-        let motion = problem.output_std();
-        let gap = nominal.variance.iter().zip(motion);
+        let variances = nominal.variance.iter().zip(&recalibrated.variance);
+        let gap = variances.zip(problem.output_std());
+        let gap = gap.map(|((given, left), std)| {
+            let most = PARAMETERS_APART * left.sqrt();
+            given.sqrt().min(std).min(most)
+        });
         Ok(Search {
             problem,
             weights,
             candidates,
             effective_samples,
-            gap: gap.map(|(v, std)| v.sqrt().min(std)).collect(),
+            gap: gap.collect(),
         })
     }
 

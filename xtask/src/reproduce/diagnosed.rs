@@ -51,17 +51,7 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
             1e6 * NOISE_M
         )),
         Block::Table(answers(&cases)),
-        Block::Text(
-            "At 100 Hz it names the reading with the fewest numbers under both truths and says that a tone in the cable and a \
-             force on the mold fit as well: *the published data cannot tell them apart*. At 500 Hz the two \
-             readings part. An alternation moves to 250 − f; only a tone of just that frequency could still stand for it. The vibration stays \
-             at 47 and 53 Hz, and what is named then \
-             ticks at those frequencies or at 50 Hz and never alternates from sample to sample; with one displacement measured and no input near 50 Hz, \
-             whether it comes through the support, the mold or the cable is left open.\n\n\
-             The rest of the gap, the force of Table 3, is taken up at this one operating point by mass, stiffness and damping \
-             estimated anew."
-                .to_owned(),
-        ),
+        Block::Text(story(&cases)?),
         Block::Table(sizes(&cases)),
     ];
     for (stem, rate_hz) in [
@@ -77,6 +67,52 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
             .to_owned(),
         blocks,
     })
+}
+
+/// What the answers amount to; an error where they no longer do.
+fn story(cases: &[Case]) -> Result<String, ReproduceError> {
+    let [slow_timing, slow_support, fast_timing, fast_support] = cases else {
+        return Err(ReproduceError::Story("two readings at two rates"));
+    };
+    let alternates = |case: &Case| {
+        let effects = case.outcome.diagnosis.verdict.effects.iter();
+        effects.clone().any(|e| e.kind == "alternating_timing")
+    };
+    let open = |case: &Case| {
+        let effects = case.outcome.diagnosis.verdict.effects.iter();
+        let rivals = effects.flat_map(|e| &e.indistinguishable);
+        rivals
+            .filter(|rival| rival.kind == "harmonic_force")
+            .count()
+            > 0
+    };
+    let alike = kinds(&slow_timing.outcome.diagnosis.verdict.effects)
+        == kinds(&slow_support.outcome.diagnosis.verdict.effects);
+    if !(alike && alternates(slow_timing) && open(slow_timing) && open(slow_support)) {
+        return Err(ReproduceError::Story(
+            "both readings get one answer at 100 Hz",
+        ));
+    }
+    if !alternates(fast_timing) || alternates(fast_support) {
+        return Err(ReproduceError::Story("the two readings part at 500 Hz"));
+    }
+    let wanted = slow_timing
+        .outcome
+        .diagnosis
+        .next_experiment
+        .as_deref()
+        .ok_or(ReproduceError::Story("an experiment would tell them apart"))?
+        .trim_end_matches('.');
+    Ok(format!(
+        "At 100 Hz it gives one answer under both truths, the reading with the fewest numbers, and says that a tone in the \
+         cable and a force on the mold fit as well: *the published data cannot tell them apart*. The experiment that it asks \
+         for: *{wanted}*. At 500 Hz the two readings part. An alternation moves to 250 − f; only a tone of just that \
+         frequency could still stand for it. The vibration stays at 47 and 53 Hz, and what is named then ticks at those \
+         frequencies or at 50 Hz and never alternates from sample to sample; with one displacement measured and no input \
+         near 50 Hz, whether it comes through the support, the mold or the cable is left open.\n\n\
+         The rest of the gap, the force of Table 3, is taken up at this one operating point by damping, mass and stiffness \
+         estimated anew."
+    ))
 }
 
 /// The mold of Table 1 as an engineer would write it, its weight included.

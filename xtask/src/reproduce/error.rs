@@ -34,6 +34,9 @@ pub enum ReproduceError {
     /// The diagnosis.
     #[error(transparent)]
     Diagnose(#[from] simgap_diagnose::DiagnoseError),
+    /// What a page tells is no longer what is computed.
+    #[error("the page on the diagnosed gap tells that {0}, which does not hold any more")]
+    Story(&'static str),
     /// The JSON writer.
     #[error("cannot write {page} as JSON: {source}")]
     Json {
