@@ -1,6 +1,7 @@
 //! Residuals and their sensitivities at one point.
 
-use simgap_simulate::{Job, Simulator, predict_all};
+use rayon::prelude::*;
+use simgap_simulate::{Job, LANES, Simulator, predict_all};
 
 use crate::layout::Layout;
 use crate::{EstimateError, Problem};
@@ -38,8 +39,15 @@ impl Point<'_> {
     }
 }
 
-/// Measured minus predicted at every point, in one batch.
+/// Measured minus predicted at every point, in as many batches as there are threads to march them.
 fn simulate(problem: &Problem, points: &[Point<'_>]) -> Vec<Result<Signals, EstimateError>> {
+    let share = points.len().div_ceil(rayon::current_num_threads().max(1));
+    let batches = points.par_chunks(share.next_multiple_of(LANES).max(LANES));
+    batches.flat_map_iter(|few| batch(problem, few)).collect()
+}
+
+/// Measured minus predicted at every point, in one batch.
+fn batch(problem: &Problem, points: &[Point<'_>]) -> Vec<Result<Signals, EstimateError>> {
     let simulators: Vec<_> = points.iter().map(|p| p.simulator(problem)).collect();
     let ready = simulators
         .iter()

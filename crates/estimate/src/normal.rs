@@ -2,6 +2,7 @@
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
+use rayon::prelude::*;
 
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Signals};
@@ -44,10 +45,14 @@ pub(crate) fn normal_equations(
     let mut gradient = vec![0.0; len];
     for (run, columns) in at.columns.iter().enumerate() {
         let index = layout.entries(run).collect::<Vec<_>>();
-        for (a, column) in columns.iter().enumerate() {
-            gradient[index[a]] += inner(column, &at.discrepancy[run], weights);
-            for (b, other) in columns.iter().enumerate().take(a + 1) {
-                let value = inner(column, other, weights);
+        let rows = columns.par_iter().enumerate().map(|(a, column)| {
+            let products = columns[..=a].iter();
+            let row: Vec<f64> = products.map(|b| inner(column, b, weights)).collect();
+            (row, inner(column, &at.discrepancy[run], weights))
+        });
+        for (a, (row, right)) in rows.collect::<Vec<_>>().into_iter().enumerate() {
+            gradient[index[a]] += right;
+            for (b, value) in row.into_iter().enumerate() {
                 hessian[(index[a], index[b])] += value;
                 if a != b {
                     hessian[(index[b], index[a])] += value;
