@@ -139,7 +139,7 @@ fn raw_of(bytes: Cow<'_, [u8]>, format: Format, notes: &mut Vec<Note>) -> Result
         Format::Hdf5 => unread("save it with -v7 in MATLAB, or as CSV"),
         Format::Zip => unread("save the table as CSV"),
         Format::Gzip => unread("unpack it first"),
-        _ => unread("save it as CSV, MAT (-v7), UFF or TDMS"),
+        _ => unread("save it as CSV, Parquet, MAT, UFF or TDMS"),
     }
 }
 

@@ -261,7 +261,7 @@ fn regress_messages_about_files_for_other_crates() {
     } else {
         assert_eq!(
             parquet[0],
-            "run.parquet: a Parquet file found, which is not read; save it as CSV, MAT (-v7), UFF or TDMS (Parquet file)"
+            "run.parquet: a Parquet file found, which is not read; save it as CSV, Parquet, MAT, UFF or TDMS (Parquet file)"
         );
     }
     if cfg!(feature = "matlab73") {
