@@ -161,7 +161,8 @@ impl Totals {
         let firsts = || of_role(Role::Single).filter_map(|score| score.first);
         let clean = |is_exact: bool| {
             let such = of_role(Role::Clean).filter(move |s| is_exact == s.is_exact);
-            Share::count(such.map(Score::is_right))
+            // A parameter that is not off is a wrong answer, but no other thing that is blamed.
+            Share::count(such.map(|s| s.outcome().is_right()))
         };
         let foreign = || of_role(Role::Foreign).chain(of_role(Role::Withheld));
         let how = |outcome: Outcome| foreign().filter(|s| s.outcome() == outcome).count();

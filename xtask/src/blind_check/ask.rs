@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use super::files::Places;
+use super::files::{Places, answer};
 use super::plan::Planned;
 use super::worker::{Reply, read};
 
@@ -46,6 +46,14 @@ pub(super) fn ask(places: &Places, case: &Planned, tell: &(dyn Fn(&str) + Sync))
             tell(&format!("{name}: failed: {why}"));
             Answered::Failed(why)
         }
+    }
+}
+
+/// The answer that an earlier run kept in a folder.
+pub(super) fn kept(folder: &Path, case: &Planned) -> Answered {
+    match read(&answer(folder, &case.name(), "json")) {
+        Ok(reply) => Answered::Reply(Box::new(reply)),
+        Err(why) => Answered::Failed(why),
     }
 }
 

@@ -56,6 +56,11 @@ impl Places {
     }
 }
 
+/// File of an answer in a folder that is kept.
+pub(super) fn answer(kept: &Path, name: &str, extension: &str) -> PathBuf {
+    kept.join("answers").join(format!("{name}.{extension}"))
+}
+
 /// An error of a file.
 pub(super) fn at(path: &Path) -> impl Fn(std::io::Error) -> BlindCheckError {
     let path = path.display().to_string();

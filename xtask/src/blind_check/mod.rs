@@ -68,6 +68,9 @@ pub struct Args {
     /// Keeps the folders of the cases, the answers and the opened truths here.
     #[arg(long)]
     pub keep: Option<PathBuf>,
+    /// Scores the answers that an earlier run of the same campaign kept here, and asks for none.
+    #[arg(long, value_name = "DIR")]
+    pub answers: Option<PathBuf>,
     /// Fails when the figures are below the floors.
     #[arg(long)]
     pub check_thresholds: bool,
@@ -158,12 +161,11 @@ pub fn run(
         planned.len(),
         sealed.digest
     ));
-    let answers: Vec<ask::Answered> = pool.install(|| {
-        planned
-            .par_iter()
-            .map(|case| ask::ask(&places, case, tell))
-            .collect()
-    });
+    let answered = |case: &plan::Planned| match &args.answers {
+        Some(kept) => ask::kept(kept, case),
+        None => ask::ask(&places, case, tell),
+    };
+    let answers: Vec<ask::Answered> = pool.install(|| planned.par_iter().map(answered).collect());
     let judged = pool.install(|| open::open(&sealed, &planned, &answers, &places))?;
     let scores: Vec<Score> = judged.iter().map(|j| j.score.clone()).collect();
     let of_level = |level: Level| -> Totals {
