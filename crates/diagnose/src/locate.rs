@@ -171,12 +171,9 @@ pub(crate) fn bands_marked(
     let noise = located.floor.iter().sum::<f64>() * 2.0 / fs;
     density.iter_mut().for_each(|d| *d = (*d - noise).max(0.0));
     let marks = marks(run);
-    let total: f64 = density.iter().sum();
-    if total <= 0.0 {
-        return vec![];
-    }
+    let total: f64 = density.iter().sum::<f64>().max(f64::MIN_POSITIVE);
     let half_bin = freq_hz.get(1).map_or(0.0, |f| 0.5 * f);
-    let constant = constant_share(&prediction.discrepancy[run], &std);
+    let constant = constant_share(&prediction.discrepancy[run], &std, &located.floor);
     let mut list = vec![BandShare {
         from_hz: 0.0,
         to_hz: half_bin,
@@ -219,15 +216,16 @@ pub(crate) fn bands_marked(
     list
 }
 
-/// Share of the means in the squared discrepancy; the spectrum is taken about them.
-fn constant_share(signals: &[Vec<f64>], std: &[f64]) -> f64 {
-    let (mut constant, mut all) = (0.0, 0.0);
+/// Share of the means in the squared discrepancy above the noise; the spectrum is taken about them.
+fn constant_share(signals: &[Vec<f64>], std: &[f64], noise: &[f64]) -> f64 {
+    let (mut constant, mut all) = (0.0, -noise.iter().sum::<f64>());
     for (signal, s) in signals.iter().zip(std) {
         let count = signal.len().max(1) as f64;
         let mean = signal.iter().sum::<f64>() / count;
         constant += (mean / s).powi(2);
         all += signal.iter().map(|d| (d / s).powi(2)).sum::<f64>() / count;
     }
+    let all = all.max(constant);
     if all > 0.0 { constant / all } else { 0.0 }
 }
 

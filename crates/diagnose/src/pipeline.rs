@@ -173,9 +173,8 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     };
     let mut notes = notes(request, &data);
     if located.is_hidden {
-        notes.push(
-            "the gap hardly stands out of the noise: where it lies is where the noise is".into(),
-        );
+        let hidden = "the gap hardly stands out of the noise: where it lies is where the noise is";
+        notes.insert(0, hidden.into());
     }
     Ok(Outcome {
         diagnosis: Diagnosis {
