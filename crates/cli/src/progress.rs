@@ -15,8 +15,8 @@ const STEPS: [(&str, f64); 10] = [
     ("pairs of effects", 0.62),
     ("sets of three", 0.70),
     ("finalists", 0.80),
-    ("verdict", 0.93),
-    ("exact parameters", 0.94),
+    ("verdict", 0.94),
+    ("exact parameters", 0.95),
     ("final fit", 0.96),
     ("check records", 1.0),
 ];
