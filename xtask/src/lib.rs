@@ -3,6 +3,7 @@
 pub mod blind_check;
 pub mod demo_records;
 pub mod effects_docs;
+pub mod generated;
 pub mod reproduce;
 pub mod tidy;
 pub mod tutorial_records;

@@ -1,7 +1,7 @@
 //! `simgap effects`: the catalogue, from its own entries.
 
 use serde::Serialize;
-use simgap_effects::{Effect, Family, Parameter, SiteKind, catalogue, find};
+use simgap_effects::{Effect, Family, Parameter, catalogue, find};
 
 use crate::args::{EffectsArgs, Format};
 use crate::error::CliError;
@@ -104,7 +104,7 @@ fn explained(effect: &dyn Effect) -> String {
     line("what it does", effect.summary());
     line("belongs to", family_words(effect.family()));
     line("law", effect.equation());
-    let (where_, key) = (site_words(effect.site()), effect.site().place());
+    let (where_, key) = (effect.site().words(), effect.site().place());
     line("can sit at", &format!("{where_}: {key}"));
     line("shown best by", effect.experiment());
     for (kind, because) in confused(effect) {
@@ -192,20 +192,6 @@ fn example(effect: &dyn Effect) -> String {
     text
 }
 
-fn site_words(site: SiteKind) -> &'static str {
-    match site {
-        SiteKind::Member => "two nodes that a member joins, or a mass and the ground",
-        SiteKind::Spring => "two nodes that a spring joins",
-        SiteKind::GroundSpring => "a node and the ground that a spring joins",
-        SiteKind::Damper => "two nodes that a damper joins",
-        SiteKind::NoSpring => "two nodes, or a mass and the ground, without a spring between them",
-        SiteKind::NoDamper => "two nodes, or a mass and the ground, without a damper between them",
-        SiteKind::Mass => "a mass",
-        SiteKind::Input => "an input",
-        SiteKind::Channel => "an output",
-    }
-}
-
 #[derive(Serialize)]
 struct Catalogue {
     schema: &'static str,
@@ -266,7 +252,7 @@ fn entry(effect: &dyn Effect) -> Entry {
         },
         summary: effect.summary(),
         equation: effect.equation(),
-        site: site_words(effect.site()),
+        site: effect.site().words(),
         place: effect.site().place(),
         parameters: parameters.collect(),
         experiment: effect.experiment(),

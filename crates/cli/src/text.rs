@@ -1,5 +1,7 @@
 //! Text for a terminal: lines of a bearable length, tables, figures, colours.
 
+use simgap_report::lines::wrap;
+
 /// Longest line, characters.
 pub(crate) const WIDTH: usize = 100;
 
@@ -11,23 +13,6 @@ pub(crate) const FAINT: anstyle::Style = anstyle::Style::new().dimmed();
 /// A word in a style.
 pub(crate) fn styled(style: anstyle::Style, text: &str) -> String {
     format!("{style}{text}{style:#}")
-}
-
-/// Lines of at most `width` characters; a longer word has a line of its own.
-pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines = Vec::new();
-    let mut line = String::new();
-    for word in text.split_whitespace() {
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
-            lines.push(std::mem::take(&mut line));
-        }
-        if !line.is_empty() {
-            line.push(' ');
-        }
-        line.push_str(word);
-    }
-    lines.push(line);
-    lines
 }
 
 /// A name on the left, the text wrapped on its right, `indent` characters from the edge.

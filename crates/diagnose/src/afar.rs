@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Effect, Family, SiteScale};
-use simgap_estimate::{Candidate, EstimateError, Score, Start, linearise_at, score_outright};
+use simgap_estimate::{Base, Candidate, EstimateError, Score, Start, score_outright};
 
 use crate::hypothesis::{Hypothesis, add, name, sort};
 use crate::search::Search;
@@ -29,8 +29,8 @@ impl Search<'_> {
     pub(crate) fn fit_from_afar(
         &self,
         base: &Hypothesis,
+        linear: &Base<'_>,
     ) -> Result<Vec<Hypothesis>, EstimateError> {
-        let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
         let shaped = self
             .candidates
             .par_iter()
@@ -38,7 +38,7 @@ impl Search<'_> {
         let scored = shaped
             .map(|(candidate, scale)| {
                 let points = points(candidate, scale);
-                let mut best = score_outright(&linear, candidate, &points).unwrap_or_default();
+                let mut best = score_outright(linear, candidate, &points).unwrap_or_default();
                 best.truncate(STARTS_OF_EACH);
                 best
             })
@@ -54,12 +54,12 @@ impl Search<'_> {
             .into_iter()
             .map(|score| add(&base.fit.estimate, score.start))
             .collect();
-        let mut fitted = self.fit_all(&starts, &linear)?;
+        let mut fitted = self.fit_all(&starts, linear)?;
         let promising: Vec<Start> = fitted
             .drain(..fitted.len().min(FINISHED))
             .map(|set| set.fit.estimate)
             .collect();
-        fitted.extend(self.fit_steps(&promising, &linear, STEPS)?);
+        fitted.extend(self.fit_steps(&promising, linear, STEPS)?);
         sort(&mut fitted);
         Ok(fitted)
     }

@@ -31,6 +31,9 @@ pub(crate) struct Located<'a> {
     floor: Vec<f64>,
     /// Whether the floor hides where the gap lies.
     pub(crate) is_hidden: bool,
+    /// Squared discrepancy over the variance of the measured channel less that of its noise, summed
+    /// over the channels, for each sample of each run. A sum over samples that is negative is none.
+    pub(crate) energy: Vec<Vec<f64>>,
 }
 
 impl<'a> Located<'a> {
@@ -39,30 +42,27 @@ impl<'a> Located<'a> {
         let square = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
         let is_hidden = square(&prediction.nrmse) < HIDES * square(floor);
         let floor = floor.iter().map(|f| if is_hidden { 0.0 } else { f * f });
+        let floor: Vec<f64> = floor.collect();
         Located {
+            energy: energy(prediction, &check.output_std(), floor.iter().sum()),
             check,
             prediction,
-            floor: floor.collect(),
+            floor,
             is_hidden,
         }
     }
 }
 
-/// Squared discrepancy over the variance of the measured channel less that of its noise, summed over
-/// the channels, for each sample of each run. A sum over samples that is negative is none.
-pub(crate) fn energy(located: &Located<'_>) -> Vec<Vec<f64>> {
-    let std = located.check.output_std();
-    let noise: f64 = located.floor.iter().sum();
-    let runs = located.prediction.discrepancy.iter();
-    runs.map(|run| {
+fn energy(prediction: &Prediction, std: &[f64], noise: f64) -> Vec<Vec<f64>> {
+    let of_run = |run: &Vec<Vec<f64>>| {
         let len = run.first().map_or(0, Vec::len);
         let square = |i: usize| {
-            let each = run.iter().zip(&std);
+            let each = run.iter().zip(std);
             each.map(|(signal, s)| (signal[i] / s).powi(2)).sum::<f64>() - noise
         };
         (0..len).map(square).collect()
-    })
-    .collect()
+    };
+    prediction.discrepancy.iter().map(of_run).collect()
 }
 
 fn shares(values: &[f64]) -> Vec<f64> {
@@ -87,8 +87,8 @@ pub(crate) fn channels(located: &Located<'_>) -> Vec<ChannelShare> {
 }
 
 pub(crate) fn records(located: &Located<'_>) -> Vec<RecordShare> {
-    let energy = energy(located);
-    let sums: Vec<f64> = energy
+    let sums: Vec<f64> = located
+        .energy
         .iter()
         .map(|run| run.iter().sum::<f64>().max(0.0))
         .collect();
@@ -103,7 +103,7 @@ pub(crate) fn records(located: &Located<'_>) -> Vec<RecordShare> {
 
 pub(crate) fn times(located: &Located<'_>) -> Vec<TimeShare> {
     let mut list = Vec::new();
-    for (run, energy) in located.check.runs.iter().zip(&energy(located)) {
+    for (run, energy) in located.check.runs.iter().zip(&located.energy) {
         let len = energy.len().div_ceil(STRETCHES).max(1);
         for (k, stretch) in energy.chunks(len).enumerate() {
             let from = k * len;
@@ -330,7 +330,7 @@ pub(crate) fn motions(
 
 /// Regions of motion where the discrepancy gathers, over the nominal motion across each place.
 pub(crate) fn states(located: &Located<'_>, motions: &[PlaceMotion]) -> Vec<StateShare> {
-    let flat: Vec<f64> = energy(located).concat();
+    let flat: Vec<f64> = located.energy.concat();
     let mut list = Vec::new();
     for group in motions.chunk_by(|a, b| a.at == b.at) {
         let place = &group[0].at;

@@ -125,13 +125,22 @@ impl<'a> Search<'a> {
         most: usize,
     ) -> Result<Vec<Hypothesis>, EstimateError> {
         let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
-        let scores = self.scores(base, &linear)?;
+        self.extend_at(base, &linear, most)
+    }
+
+    fn extend_at(
+        &self,
+        base: &Hypothesis,
+        linear: &Base<'_>,
+        most: usize,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        let scores = self.scores(base, linear)?;
         let starts: Vec<Start> = self
             .pick(scores, most, base.effects().is_empty())
             .into_iter()
             .map(|score| add(&base.fit.estimate, score.start))
             .collect();
-        self.fit_all(&starts, &linear)
+        self.fit_all(&starts, linear)
     }
 
     /// The sets in which one effect has grown into one that contains it or turns into it.
@@ -315,10 +324,11 @@ impl<'a> Search<'a> {
         step: &(dyn Fn(&str) + Sync),
     ) -> Result<Vec<Hypothesis>, EstimateError> {
         step("single effects");
-        let mut pool = self.extend(base, FITTED[0])?;
+        let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
+        let mut pool = self.extend_at(base, &linear, FITTED[0])?;
         if !pool.iter().any(|set| self.is_exhausted(set)) {
             step("single effects from afar");
-            pool.extend(self.fit_from_afar(base)?);
+            pool.extend(self.fit_from_afar(base, &linear)?);
             sort(&mut pool);
             unique(&mut pool);
         }

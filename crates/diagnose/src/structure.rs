@@ -61,7 +61,8 @@ pub(crate) fn describe(
     sentences
 }
 
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
+/// Correlation coefficient; zero where one of the two does not vary.
+pub(crate) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len()).max(1) as f64;
     let mean = |x: &[f64]| x.iter().sum::<f64>() / n;
     let (ma, mb) = (mean(a), mean(b));

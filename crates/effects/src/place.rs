@@ -162,6 +162,26 @@ impl SiteKind {
             SiteKind::Channel => CHANNEL,
         }
     }
+
+    /// The same in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            SiteKind::Member => "two nodes that a member joins, or a mass and the ground",
+            SiteKind::Spring => "two nodes that a spring joins",
+            SiteKind::GroundSpring => "a node and the ground that a spring joins",
+            SiteKind::Damper => "two nodes that a damper joins",
+            SiteKind::NoSpring => {
+                "two nodes, or a mass and the ground, without a spring between them"
+            }
+            SiteKind::NoDamper => {
+                "two nodes, or a mass and the ground, without a damper between them"
+            }
+            SiteKind::Mass => "a mass",
+            SiteKind::Input => "an input",
+            SiteKind::Channel => "an output",
+        }
+    }
 }
 
 fn kinds() -> String {

@@ -174,7 +174,12 @@ fn trials(candidate: &Candidate, shape: &[f64]) -> Vec<Trial> {
 
 /// The values of a shape with its k-th sized parameter at a share of its start and the other sized
 /// parameters at the values where the effect vanishes; `None` for all sized parameters together.
-fn sized(effect: &dyn Effect, shape: &[f64], only: Option<usize>, share: f64) -> Vec<f64> {
+pub(crate) fn sized(
+    effect: &dyn Effect,
+    shape: &[f64],
+    only: Option<usize>,
+    share: f64,
+) -> Vec<f64> {
     let sized = effect.parameters().iter().zip(shape).enumerate();
     sized
         .map(|(i, (parameter, &value))| match parameter.neutral {
@@ -426,7 +431,7 @@ impl Base<'_> {
     }
 
     /// H⁻¹ times columns of JᵀW.
-    pub(crate) fn past_nuisance(&self, right: &Mat<f64>) -> Mat<f64> {
+    fn past_nuisance(&self, right: &Mat<f64>) -> Mat<f64> {
         let len = self.layout.len();
         if len == 0 {
             return Mat::zeros(0, right.ncols());

@@ -3,6 +3,7 @@
 use simgap_diagnose::{Diagnosis, Status};
 use simgap_model::Location;
 
+use crate::lines::wrap;
 use crate::number::{percent, ratio};
 use crate::wording::{effect_at, headline, particulars, plain, sentence};
 
@@ -250,21 +251,4 @@ fn clean(text: &str) -> String {
         })
         .filter(|c| !c.is_control())
         .collect()
-}
-
-/// Lines of at most `width` characters; a longer word has a line of its own.
-fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines = Vec::new();
-    let mut line = String::new();
-    for word in text.split(' ').filter(|w| !w.is_empty()) {
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
-            lines.push(std::mem::take(&mut line));
-        }
-        if !line.is_empty() {
-            line.push(' ');
-        }
-        line.push_str(word);
-    }
-    lines.push(line);
-    lines
 }

@@ -7,11 +7,11 @@ mod signature;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs;
-use std::path::{Path, PathBuf};
 
-use simgap_effects::{Effect, Family, Parameter, SiteKind, catalogue};
+use simgap_effects::{Effect, Family, Parameter, catalogue};
 use thiserror::Error;
+
+use crate::generated::{self, Change, FileError};
 
 pub use picture::{Picture, PictureError, picture};
 
@@ -31,22 +31,12 @@ pub struct Args {
 /// The page cannot be made, read or written.
 #[derive(Debug, Error)]
 pub enum EffectsDocsError {
-    /// A file cannot be read or written.
-    #[error("{}: {source}", .path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    /// A file.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A picture cannot be drawn.
     #[error(transparent)]
     Picture(#[from] PictureError),
-}
-
-fn refused(path: &Path) -> impl FnOnce(std::io::Error) -> EffectsDocsError {
-    let path = path.to_owned();
-    move |source| EffectsDocsError::File { path, source }
 }
 
 /// Writes the page and the pictures, or compares them with what is committed; one line for each
@@ -58,17 +48,7 @@ pub fn run(args: &Args) -> Result<Vec<String>, EffectsDocsError> {
     if args.check {
         return differences();
     }
-    let files = files()?;
-    let folder = root().join(PICTURES);
-    fs::create_dir_all(&folder).map_err(refused(&folder))?;
-    for strange in strangers(&files)? {
-        let path = root().join(strange);
-        fs::remove_file(&path).map_err(refused(&path))?;
-    }
-    for (name, text) in &files {
-        let path = root().join(name);
-        fs::write(&path, text).map_err(refused(&path))?;
-    }
+    generated::write(&generated::workspace_root(), &[PICTURES], &files()?)?;
     Ok(vec![])
 }
 
@@ -77,59 +57,16 @@ pub fn run(args: &Args) -> Result<Vec<String>, EffectsDocsError> {
 /// # Errors
 /// As [`run`].
 pub fn differences() -> Result<Vec<String>, EffectsDocsError> {
-    let files = files()?;
-    let mut lines: Vec<String> = strangers(&files)?
-        .iter()
-        .map(|name| format!("{name}: no effect of the catalogue has this picture, {REMEDY}"))
-        .collect();
-    for (name, needed) in &files {
-        let path = root().join(name);
-        match fs::read_to_string(&path) {
-            Ok(found) => lines.extend(difference(name, &found, needed)),
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                lines.push(format!("{name}: missing, {REMEDY}"));
-            }
-            Err(source) => return Err(EffectsDocsError::File { path, source }),
+    const REMEDY: &str = "run `cargo xtask effects-docs`";
+    let changes = generated::compare(&generated::workspace_root(), &[PICTURES], &files()?)?;
+    let line = |(name, change)| match change {
+        Change::Missing => format!("{name}: missing, {REMEDY}"),
+        Change::FromLine(line) => format!("{name}:{line}: differs from the catalogue, {REMEDY}"),
+        Change::Strange => {
+            format!("{name}: no effect of the catalogue has this picture, {REMEDY}")
         }
-    }
-    Ok(lines)
-}
-
-const REMEDY: &str = "run `cargo xtask effects-docs`";
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// Pictures that are committed and belong to no effect.
-fn strangers(files: &BTreeMap<String, String>) -> Result<Vec<String>, EffectsDocsError> {
-    let folder = root().join(PICTURES);
-    let mut found = Vec::new();
-    if folder.is_dir() {
-        for entry in fs::read_dir(&folder).map_err(refused(&folder))? {
-            let entry = entry.map_err(refused(&folder))?;
-            let name = format!("{PICTURES}/{}", entry.file_name().to_string_lossy());
-            if !files.contains_key(&name) {
-                found.push(name);
-            }
-        }
-    }
-    found.sort();
-    Ok(found)
-}
-
-fn difference(name: &str, found: &str, needed: &str) -> Option<String> {
-    if found == needed {
-        return None;
-    }
-    let same = found
-        .lines()
-        .zip(needed.lines())
-        .take_while(|(a, b)| a == b);
-    let line = same.count() + 1;
-    Some(format!(
-        "{name}:{line}: differs from the catalogue, {REMEDY}"
-    ))
+    };
+    Ok(changes.into_iter().map(line).collect())
 }
 
 /// Everything that is generated, by its path from the root of the workspace.
@@ -210,7 +147,7 @@ fn section(text: &mut String, effect: &dyn Effect, picture: Option<&Picture>) {
         effect.kind(),
         sentence(effect.summary()),
         effect.equation(),
-        place(effect.site()),
+        effect.site().words(),
         effect.site().place(),
     );
     for parameter in effect.parameters() {
@@ -249,20 +186,6 @@ fn sentence(summary: &str) -> String {
     match letters.next() {
         Some(first) => first.to_uppercase().chain(letters).collect(),
         None => String::new(),
-    }
-}
-
-fn place(site: SiteKind) -> &'static str {
-    match site {
-        SiteKind::Member => "two nodes that a member joins, or a mass and the ground",
-        SiteKind::Spring => "two nodes that a spring joins",
-        SiteKind::GroundSpring => "a node and the ground that a spring joins",
-        SiteKind::Damper => "two nodes that a damper joins",
-        SiteKind::NoSpring => "two nodes, or a mass and the ground, without a spring between them",
-        SiteKind::NoDamper => "two nodes, or a mass and the ground, without a damper between them",
-        SiteKind::Mass => "a mass",
-        SiteKind::Input => "an input",
-        SiteKind::Channel => "an output",
     }
 }
 
@@ -319,17 +242,5 @@ mod tests {
             }
             assert!(!svg.contains("no data") && !svg.contains("NaN"));
         }
-    }
-
-    #[test]
-    fn verify_a_difference_is_named() {
-        assert_eq!(difference(PAGE, "a\nb\n", "a\nb\n"), None);
-        let found = difference(PAGE, "a\nb\n", "a\nc\n").unwrap();
-        assert!(found.starts_with("docs/effects.md:2: differs"), "{found}");
-        assert!(
-            difference(PAGE, "a\n", "a\nc\n")
-                .unwrap()
-                .starts_with("docs/effects.md:2:")
-        );
     }
 }

@@ -58,6 +58,10 @@ const FREQ_COUNT: usize = 220;
 /// The share of the variance by which velocity must explain a force better than displacement.
 const CLEARLY: f64 = 0.05;
 
+/// What the curves of a signal are called, and their unit.
+const INPUT: (&str, &str) = ("input", "N");
+const OUTPUT: (&str, &str) = ("output", "mm");
+
 /// The signature of an effect with these values.
 pub(super) fn signature(stage: &Stage, values: &[f64]) -> Result<Signature, SimulateError> {
     match stage.effect.action(values) {
@@ -68,8 +72,8 @@ pub(super) fn signature(stage: &Stage, values: &[f64]) -> Result<Signature, Simu
             change(&mut changed, &stage.at);
             Ok(of_response(&stage.model, &changed)?)
         }
-        Action::Input(map) => Ok(of_input(map.as_ref())),
-        Action::Output(map) => Ok(of_output(map.as_ref(), &displacement()?)),
+        Action::Input(map) => Ok(of_signal(map.as_ref(), &pulses(), 1.0, INPUT)),
+        Action::Output(map) => Ok(of_signal(map.as_ref(), &displacement()?, 1e3, OUTPUT)),
         Action::Sampling(map) => Ok(of_samples(
             stage.effect,
             values,
@@ -264,27 +268,17 @@ fn curve(times: impl Iterator<Item = f64>, values: &[f64], factor: f64) -> Curve
     times.zip(values.iter().map(|v| factor * v)).collect()
 }
 
-fn of_input(map: &dyn SignalMap) -> Signature {
-    let (time, force) = (times(), pulses());
-    let arrives = map.apply(Sampled::from_start(&force, time[1] - time[0]));
-    let without = curve(time.iter().copied(), &force, 1.0);
-    let with = curve(time.iter().copied(), &arrives, 1.0);
-    Signature {
-        over: Over::Time,
-        range: None,
-        change: relative(&without, &with, 1.0),
-        without,
-        with,
-        samples: false,
-        quantity: ("input", "N"),
-    }
-}
-
-fn of_output(map: &dyn SignalMap, displacement: &[f64]) -> Signature {
+/// A signal sample by sample, as it is and as a map hands it on.
+fn of_signal(
+    map: &dyn SignalMap,
+    signal: &[f64],
+    factor: f64,
+    quantity: (&'static str, &'static str),
+) -> Signature {
     let time = times();
-    let stored = map.apply(Sampled::from_start(displacement, time[1] - time[0]));
-    let without = curve(time.iter().copied(), displacement, 1e3);
-    let with = curve(time.iter().copied(), &stored, 1e3);
+    let handed_on = map.apply(Sampled::from_start(signal, time[1] - time[0]));
+    let without = curve(time.iter().copied(), signal, factor);
+    let with = curve(time.iter().copied(), &handed_on, factor);
     Signature {
         over: Over::Time,
         range: None,
@@ -292,7 +286,7 @@ fn of_output(map: &dyn SignalMap, displacement: &[f64]) -> Signature {
         without,
         with,
         samples: false,
-        quantity: ("output", "mm"),
+        quantity,
     }
 }
 
@@ -320,7 +314,7 @@ fn of_samples(
         without: curve(fine.iter().copied(), displacement, 1e3),
         with,
         samples: true,
-        quantity: ("output", "mm"),
+        quantity: OUTPUT,
     }
 }
 

@@ -1,8 +1,8 @@
 //! What can go wrong while the paper is reproduced.
 
-use std::path::PathBuf;
-
 use thiserror::Error;
+
+use crate::generated::FileError;
 
 /// Why the reproduction failed.
 #[derive(Debug, Error)]
@@ -46,11 +46,6 @@ pub enum ReproduceError {
         source: serde_json::Error,
     },
     /// A file.
-    #[error("{path}: {source}")]
-    File {
-        /// Which file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
 }

@@ -25,6 +25,8 @@ mod table5;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::generated;
+
 pub use context::Context;
 pub use error::ReproduceError;
 pub use files::Outcome;
@@ -48,7 +50,7 @@ pub struct Args {
 /// [`ReproduceError`] when a computation fails or a file cannot be read or written. Differences
 /// found by `--check` are an [`Outcome`], not an error.
 pub fn run(args: &Args) -> Result<Outcome, ReproduceError> {
-    let root = args.root.clone().unwrap_or_else(files::workspace_root);
+    let root = args.root.clone().unwrap_or_else(generated::workspace_root);
     if args.check {
         check(&root)
     } else {

@@ -4,6 +4,7 @@ use simgap_signal::metrics::{Grade, iso18571, nrmse, russell, sprague_geers};
 
 use super::comparison::{Agreement, MagnitudePhase, Rating};
 use super::pair::Trace;
+use crate::structure::correlation;
 
 /// Samples that ISO/TS 18571 is computed on at the most: its time warping costs 0.2 N².
 const RATED: usize = 10_000;
@@ -55,22 +56,4 @@ fn rating(measured: &[f64], simulated: &[f64]) -> Option<Rating> {
         },
         every,
     })
-}
-
-/// Correlation coefficient; zero where one of the two does not vary.
-pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let count = a.len().min(b.len()).max(1) as f64;
-    let mean = |x: &[f64]| x.iter().sum::<f64>() / count;
-    let (mean_a, mean_b) = (mean(a), mean(b));
-    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
-    for (x, y) in a.iter().zip(b) {
-        ab += (x - mean_a) * (y - mean_b);
-        aa += (x - mean_a).powi(2);
-        bb += (y - mean_b).powi(2);
-    }
-    if aa > 0.0 && bb > 0.0 {
-        ab / (aa * bb).sqrt()
-    } else {
-        0.0
-    }
 }

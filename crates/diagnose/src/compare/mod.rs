@@ -208,7 +208,7 @@ fn found(pairing: &Pairing, problem: &Problem, diagnosis: &Diagnosis) -> Where {
     let channels = diagnosis.gap.channels.iter();
     let floors: Vec<f64> = channels.map(|c| c.noise_floor).collect();
     let located = Located::new(problem, &prediction, &floors);
-    let energy = locate::energy(&located).concat();
+    let energy = located.energy.concat();
     let states = pairing.traces.iter().flat_map(|trace| {
         let motion = motion::motion(trace, step);
         motion::states(trace, motion.as_ref(), &energy)
