@@ -1,8 +1,8 @@
 //! Single effects fitted from afar.
 //!
 //! Where no single effect explains a gap, it may be that the right one was fitted from the wrong side of
-//! a ridge. Effects with a shape are then simulated at many values, spread over two decades about
-//! their starting values, and fitted from the best of them.
+//! a ridge, or from a size at which it does something else. Effects of the machine are then simulated at
+//! many values, spread over two decades about their starting values, and fitted from the best of them.
 
 use rayon::prelude::*;
 use simgap_effects::{Effect, Family, SiteScale};
@@ -13,6 +13,8 @@ use crate::search::Search;
 
 /// Values tried of each effect at each place.
 const POINTS: usize = 48;
+/// The same of an effect with one value.
+const POINTS_OF_ONE: usize = 16;
 /// Values lie within this factor of the starting values.
 const SPREAD: f64 = 10.0;
 /// Sets fitted, and from how many values of each.
@@ -25,17 +27,17 @@ const STEPS: usize = 30;
 const PRIMES: [usize; 6] = [2, 3, 5, 7, 11, 13];
 
 impl Search<'_> {
-    /// Every single effect with a shape, fitted from the best of many values. Best first.
+    /// Every single effect of the machine, fitted from the best of many values. Best first.
     pub(crate) fn fit_from_afar(
         &self,
         base: &Hypothesis,
         linear: &Base<'_>,
     ) -> Result<Vec<Hypothesis>, EstimateError> {
-        let shaped = self
+        let curved = self
             .candidates
             .par_iter()
-            .filter(|(c, _)| has_shape(c.effect));
-        let scored = shaped
+            .filter(|(c, _)| is_curved(c.effect));
+        let scored = curved
             .map(|(candidate, scale)| {
                 let points = points(candidate, scale);
                 let mut best = score_outright(linear, candidate, &points).unwrap_or_default();
@@ -65,42 +67,45 @@ impl Search<'_> {
     }
 }
 
-/// Whether an effect of the machine has, besides its size, values that shape it.
-fn has_shape(effect: &dyn Effect) -> bool {
-    let parameters = effect.parameters();
-    let shared = parameters.iter().filter(|p| !p.per_record);
-    matches!(effect.family(), Family::Force | Family::Dynamics)
-        && effect.clock().is_none()
-        && shared.clone().count() > 1
-        && shared
-            .clone()
-            .any(|p| p.neutral.is_none_or(f64::is_infinite))
+/// Whether an effect of the machine answers to more than in proportion to its size.
+fn is_curved(effect: &dyn Effect) -> bool {
+    matches!(effect.family(), Family::Force | Family::Dynamics) && effect.clock().is_none()
 }
 
-/// Values about each start of an effect in turn, by a low-discrepancy sequence in their logarithms.
+/// Values about each start of an effect in turn, by a low-discrepancy sequence in their logarithms; of
+/// sizes that may have either sign, in both.
 fn points(candidate: &Candidate, scale: &SiteScale) -> Vec<Vec<f64>> {
     let parameters = candidate.effect.parameters();
     let starts = candidate.effect.starts(scale);
-    let moved = |i: usize, start: &[f64]| {
+    let moved = |number: usize, start: &[f64]| {
         let values = parameters.iter().zip(start).enumerate();
         let mut values: Vec<f64> = values
             .map(|(k, (parameter, value))| {
                 if parameter.per_record {
                     return *value;
                 }
-                let share = radical_inverse(i + 1, PRIMES[k % PRIMES.len()]);
-                let moved = value * SPREAD.powf(2.0 * share - 1.0);
+                let share = radical_inverse(number, PRIMES[k % PRIMES.len()]);
+                let either = parameter.lower < 0.0 && parameter.upper > 0.0;
+                // The halves of a range each have all of the spread.
+                let (sign, share) = match 2.0 * share {
+                    twice if !either => (1.0, 0.5 * twice),
+                    twice if twice < 1.0 => (1.0, twice),
+                    twice => (-1.0, twice - 1.0),
+                };
+                let moved = sign * value * SPREAD.powf(2.0 * share - 1.0);
                 moved.clamp(parameter.lower, parameter.upper)
             })
             .collect();
         candidate.effect.make_physical(&mut values);
         values
     };
-    let each = starts
+    let shared = parameters.iter().filter(|p| !p.per_record).count();
+    let most = if shared > 1 { POINTS } else { POINTS_OF_ONE };
+    let each = most / starts.len().max(1);
+    starts
         .iter()
-        .cycle()
-        .take(if starts.is_empty() { 0 } else { POINTS });
-    each.enumerate().map(|(i, start)| moved(i, start)).collect()
+        .flat_map(|start| (1..=each).map(|number| moved(number, start)))
+        .collect()
 }
 
 /// The digits of a number in a base, mirrored at the point: evenly spread over 0 to 1.

@@ -12,7 +12,7 @@ use crate::evidence::probabilities;
 use crate::gap::{closed, predict, total};
 use crate::hypothesis::name;
 use crate::pipeline::Answer;
-use crate::stand_in::doubts;
+use crate::stand_in::{company, doubts};
 use crate::structure::describe;
 use crate::verdict::{
     CLOSES, CLOSES_BEYOND_RECALIBRATION, IMITATION_LEAVES, IMITATION_STANDS_OUT, INDISTINGUISHABLE,
@@ -27,6 +27,8 @@ const ANOTHER_LAW: f64 = 0.3;
 /// Share of the gap on the check records that a name which may be a stand-in may leave: with less, it
 /// serves as well as the law it stands in for.
 const STAND_IN_LEAVES: f64 = 0.03;
+/// Two laws at one place that are there leave the noise of the check records, but for this factor.
+const TWO_STAND_OUT: f64 = 1.03;
 /// What leaves less than this multiple of the noise leaves nothing.
 const NOTHING_BUT_NOISE: f64 = 1.1;
 /// How often a name is right that beats its rivals by far, and one that may be a stand-in; on
@@ -133,25 +135,41 @@ fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> b
             && !explains_all_it_saw(answer))
 }
 
-/// Whether a single effect leaves nothing but noise of the records it was fitted to. Where it fails on
-/// the check records then, their motion hangs on differences that no estimate resolves: play, sticking.
+/// Whether a set with one law of the machine at the most leaves nothing but noise of the records it was
+/// fitted to. Where it fails on the check records then, their motion hangs on differences that no estimate
+/// resolves: play, sticking.
 fn explains_all_it_saw(answer: &Answer) -> bool {
-    answer.judged.len() == 1 && answer.remainder.over_noise < NOTHING_BUT_NOISE
+    laws(answer) <= 1 && answer.remainder.over_noise < NOTHING_BUT_NOISE
 }
 
-/// Whether several forces and dynamics together leave more than true ones would: a law that the
-/// catalogue lacks is imitated by two or three that it has.
-fn imitation(answer: &Answer, gap: &Gap) -> bool {
+/// Named forces and dynamics.
+fn laws(answer: &Answer) -> usize {
     let machine = |judged: &&Judged| {
         matches!(
             judged.placed.effect.family(),
             Family::Force | Family::Dynamics
         )
     };
-    let count = answer.judged.iter().filter(machine).count();
+    answer.judged.iter().filter(machine).count()
+}
+
+/// Whether several forces and dynamics together leave more than true ones would: a law that the
+/// catalogue lacks is imitated by two or three that it has.
+fn imitation(answer: &Answer, gap: &Gap) -> bool {
+    let count = laws(answer);
     let left = 1.0 - closed(gap.recalibrated, gap.corrected, gap.noise_floor);
     let stands_out = gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor;
-    count >= 2 && stands_out && left > IMITATION_LEAVES[usize::from(count > 2)]
+    let several = count >= 2 && stands_out && left > IMITATION_LEAVES[usize::from(count > 2)];
+    several || two_for_one(answer, gap)
+}
+
+/// Whether two laws at one place leave more than one law that stands in for a foreign one may.
+fn two_for_one(answer: &Answer, gap: &Gap) -> bool {
+    let mut each = 0..answer.judged.len();
+    laws(answer) > 0
+        && each.any(|i| company(answer, i).is_some())
+        && gap.closed < 1.0 - STAND_IN_LEAVES
+        && gap.corrected > TWO_STAND_OUT * gap.noise_floor
 }
 
 /// Whether a law of another shape than the named one acts at its place.
@@ -207,7 +225,9 @@ fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
 fn rivals(answer: &Answer, judged: &Judged) -> Vec<Rival> {
     let swaps = judged.swaps.iter();
     let mut close: Vec<&Swap> = swaps
-        .filter(|swap| is_as_likely(answer, swap) || is_same_line(swap))
+        .filter(|swap| {
+            is_as_likely(answer, swap) || is_same_line(swap) || is_out_of_sight(judged, swap)
+        })
         .collect();
     close.sort_by(|a, b| {
         let by_fit = a.misfit.total_cmp(&b.misfit);
@@ -226,7 +246,7 @@ fn rivals(answer: &Answer, judged: &Judged) -> Vec<Rival> {
         .map(|swap| Rival {
             kind: swap.placed.effect.kind().to_string(),
             at: swap.placed.at.clone(),
-            because: because(answer, own, swap),
+            because: because(answer, judged, swap),
         })
         .collect()
 }
@@ -241,8 +261,23 @@ fn is_same_line(swap: &Swap) -> bool {
     swap.placed.effect.clock().is_some() && swap.misfit < INDISTINGUISHABLE
 }
 
-fn because(answer: &Answer, own: &str, swap: &Swap) -> String {
+/// Dynamics that turn into what is named where their own mode is out of sight: the data would have to
+/// contradict them, the number of their parameters says nothing.
+fn is_out_of_sight(judged: &Judged, swap: &Swap) -> bool {
+    let limits = swap.placed.effect.turns_into();
+    limits.contains(&judged.placed.effect.kind())
+        && judged.placed.at == swap.placed.at
+        && swap.misfit < INDISTINGUISHABLE
+}
+
+fn because(answer: &Answer, judged: &Judged, swap: &Swap) -> String {
+    let own = judged.placed.effect.kind();
     let behind = answer.set.evidence - swap.evidence;
+    if is_out_of_sight(judged, swap) {
+        return format!(
+            "where its own mode is out of sight it acts as {own} does, and it fits as well"
+        );
+    }
     if !is_as_likely(answer, swap) {
         return format!(
             "at this sample rate its line is where {own} leaves one of this motion, and it fits as well"

@@ -46,7 +46,13 @@ pub(crate) fn effective_samples(problem: &Problem, weights: &Weights) -> f64 {
 pub(crate) fn evidence(fit: &Fit, effective_samples: f64) -> f64 {
     let effects = fit.estimate.effects.iter();
     let freed = effects.filter(|placed| is_nominal(placed)).count() as f64;
-    -fit.objective - 0.5 * freedom(fit) * effective_samples.ln() - freed * FREED
+    -fit.objective - penalty(&fit.information, effective_samples) - freed * FREED
+}
+
+/// Σ_j of (1).
+fn penalty(information: &[f64], effective_samples: f64) -> f64 {
+    let most = effective_samples.ln();
+    0.5 * information.iter().map(|known| known.min(most)).sum::<f64>()
 }
 
 /// k of (1): parameters of the effects. One that every record has of its own counts once for each.

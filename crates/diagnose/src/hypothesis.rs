@@ -80,6 +80,13 @@ pub(crate) fn remove(start: &Start, index: usize) -> Start {
     next
 }
 
+/// A start with another effect in the place of one of its own. A nominal parameter gets its prior back.
+pub(crate) fn replace(start: &Start, index: usize, effect: Placed) -> Start {
+    let mut next = remove(start, index);
+    next.effects.insert(index, effect);
+    next
+}
+
 fn neutral(placed: &Placed) -> Vec<f64> {
     placed
         .effect

@@ -11,11 +11,11 @@ use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
-use crate::hypothesis::{Hypothesis, name, sort};
+use crate::hypothesis::{Hypothesis, name, remove, sort};
 use crate::locate::Located;
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
-use crate::verdict::{Judged, judge, prune, simplest};
+use crate::verdict::{Judged, add_rivals_out_of_sight, is_told_from_none, judge, prune, simplest};
 use crate::{DiagnoseError, answer, locate};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
@@ -298,7 +298,7 @@ fn search(
     progress("verdict");
     let best = simplest(&search, finalists, &singles).unwrap_or(base);
     let set = prune(&search, best)?;
-    let (set, judged) = if set.effects().is_empty() {
+    let (mut set, mut judged) = if set.effects().is_empty() {
         // Nothing beyond small errors of the nominal parameters: which of them are seen, when the
         // others are held exactly?
         progress("exact parameters");
@@ -321,6 +321,9 @@ fn search(
         start.nominal.retain(|p| !named.contains(&name(p)));
         let settled = search.fit(&start)?;
         start = settled.fit.estimate.clone();
+        if scope == Scope::Everything {
+            add_rivals_out_of_sight(&search, &set, &settled, &mut judged)?;
+        }
         remainder(&search, &settled)?
     } else {
         remainder(&search, &set)?
@@ -335,7 +338,13 @@ fn search(
         most_steps: plain.most_steps,
         ..search.weights.clone()
     };
-    let estimate = fit(train, &start, &weights)?;
+    let mut estimate = fit(train, &start, &weights)?;
+    // What the search saw on its excerpt, all samples may not tell from nothing.
+    while let Some(i) = first_unseen(&estimate, &judged) {
+        judged.remove(i);
+        set = search.fit(&remove(&set.fit.estimate, i))?;
+        estimate = fit(train, &remove(&estimate.estimate, i), &weights)?;
+    }
     Ok(Answer {
         set,
         estimate,
@@ -343,6 +352,15 @@ fn search(
         remainder,
         singles,
         nominal: nominal.clone(),
+    })
+}
+
+/// The first named effect that is no nominal parameter and whose size cannot be told from none.
+fn first_unseen(estimate: &Fit, judged: &[Judged]) -> Option<usize> {
+    let mut named = judged.iter().zip(&estimate.intervals);
+    named.position(|(judged, intervals)| {
+        judged.placed.effect.family() != Family::NominalParameter
+            && !is_told_from_none(&judged.placed, intervals)
     })
 }
 

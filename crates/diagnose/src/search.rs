@@ -12,7 +12,7 @@ use simgap_estimate::{
 use simgap_model::Location;
 
 use crate::evidence::{effective_samples, evidence, freedom};
-use crate::hypothesis::{Hypothesis, add, name, pull, pull_of, same, sort, unique};
+use crate::hypothesis::{Hypothesis, add, name, pull, pull_of, replace, same, sort, unique};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -183,6 +183,12 @@ impl<'a> Search<'a> {
         starts.par_iter().map(|start| self.fit(start)).collect()
     }
 
+    /// Typical sizes at a place.
+    pub(crate) fn scale_at(&self, at: &Location) -> SiteScale {
+        let known = self.candidates.iter().find(|(known, _)| known.at == *at);
+        known.map_or_else(|| SiteScale::plain(0.0, 0.0, 0.0), |(_, scale)| *scale)
+    }
+
     /// How much more a set is penalised than another for its parameters.
     pub(crate) fn penalty(&self, larger: &Hypothesis, smaller: &Hypothesis) -> f64 {
         let count = |set: &Hypothesis| freedom(&set.fit);
@@ -198,11 +204,12 @@ impl<'a> Search<'a> {
         });
         larger
             .flat_map(|(candidate, scale)| {
-                let shapes = candidate.effect.grown_from(&old.values, scale);
+                let shapes = candidate
+                    .effect
+                    .grown_from(old.effect.kind(), &old.values, scale);
                 shapes.into_iter().map(|values| {
-                    let mut start = base.fit.estimate.clone();
-                    start.effects[index] = Placed::new(candidate.effect, old.at.clone(), values);
-                    start
+                    let grown = Placed::new(candidate.effect, old.at.clone(), values);
+                    replace(&base.fit.estimate, index, grown)
                 })
             })
             .collect()

@@ -4,6 +4,7 @@ use simgap_effects::{Family, Parameter, Placed};
 use simgap_estimate::Interval;
 
 use crate::pipeline::Answer;
+use crate::verdict::moves_in_steps;
 
 /// A value this near to the end of its range, relative to it, is at the end.
 const AT_THE_END: f64 = 1e-3;
@@ -25,6 +26,10 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
             other.effect.kind()
         ));
     }
+    if moves_in_steps(placed) {
+        // A converter, a lost sample: nothing is fitted whose values could look odd.
+        return doubts;
+    }
     let fitted = answer.estimate.estimate.effects.get(i);
     let values = fitted.map_or(&placed.values, |fitted| &fitted.values);
     let parameters = placed.effect.parameters().iter().zip(values);
@@ -38,11 +43,14 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
         }
     }
     let intervals = answer.estimate.intervals.get(i).into_iter().flatten();
-    for (parameter, interval) in placed.effect.parameters().iter().zip(intervals) {
+    for (parameter, interval) in placed.effect.parameters().iter().zip(intervals.clone()) {
         if parameter.neutral.is_none() && !parameter.per_record && is_unseen(interval) {
             doubts.push(format!("these records hardly show its {}", parameter.name));
         }
     }
+    let ci95: Vec<[f64; 2]> = intervals.map(|interval| interval.ci95).collect();
+    let own = placed.effect.doubt(values, &ci95, &answer.judged[i].scale);
+    doubts.extend(own.map(str::to_owned));
     if let Some(law) = &answer.remainder.law
         && law.at == placed.at
         && law.share > MISFITS
@@ -56,7 +64,7 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
 }
 
 /// Another law of the machine at the place of the i-th effect.
-fn company(answer: &Answer, i: usize) -> Option<&Placed> {
+pub(crate) fn company(answer: &Answer, i: usize) -> Option<&Placed> {
     let is_law = |placed: &Placed| {
         matches!(
             placed.effect.family(),

@@ -1,8 +1,10 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Action, Placed};
-use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states};
+use simgap_effects::{Action, Placed, SiteScale};
+use simgap_estimate::{
+    EstimateError, Fit, Interval, Problem, Start, Weights, fit, fit_initial_states,
+};
 use simgap_simulate::Run;
 
 use crate::evidence::{freedom, probabilities};
@@ -66,6 +68,8 @@ pub(crate) struct Swap {
 /// One effect of the answer with its rivals.
 pub(crate) struct Judged {
     pub(crate) placed: Placed,
+    /// Typical sizes at its place.
+    pub(crate) scale: SiteScale,
     pub(crate) probability: f64,
     /// Evidence lost without it.
     pub(crate) worth: f64,
@@ -198,29 +202,30 @@ fn matters(search: &Search<'_>, set: &Hypothesis, subset: &Hypothesis) -> bool {
     channels.any(|((poorer, better), gap)| (poorer - better).max(0.0).sqrt() > MATTERS * gap)
 }
 
-/// Whether the effect that a subset lacks has a size that can be told from none: one of its
-/// parameters that has a neutral value is surely away from it.
+/// Whether the effect that a subset lacks has a size that can be told from none.
 fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
     let kept = subset.key();
     let effects = set.effects().iter().zip(&set.fit.intervals);
     let mut lost = effects.filter(|(placed, _)| !kept.contains(&name(placed)));
-    lost.all(|(placed, intervals)| {
-        if moves_in_steps(placed) {
-            // No derivative to take an interval from.
-            return true;
-        }
-        let parameters = placed.effect.parameters().iter().zip(intervals);
-        let mut sizes = parameters
-            .filter(|(parameter, _)| !parameter.per_record)
-            .filter_map(|(parameter, interval)| Some((parameter.neutral?, interval.ci95)))
-            .filter(|(neutral, _)| neutral.is_finite())
-            .peekable();
-        sizes.peek().is_none()
-            || sizes.any(|(neutral, [low, high])| neutral < low || neutral > high)
-    })
+    lost.all(|(placed, intervals)| is_told_from_none(placed, intervals))
 }
 
-fn moves_in_steps(placed: &Placed) -> bool {
+/// Whether one of the parameters of an effect that have a neutral value is surely away from it.
+pub(crate) fn is_told_from_none(placed: &Placed, intervals: &[Interval]) -> bool {
+    if moves_in_steps(placed) {
+        // No derivative to take an interval from.
+        return true;
+    }
+    let parameters = placed.effect.parameters().iter().zip(intervals);
+    let mut sizes = parameters
+        .filter(|(parameter, _)| !parameter.per_record)
+        .filter_map(|(parameter, interval)| Some((parameter.neutral?, interval.ci95)))
+        .filter(|(neutral, _)| neutral.is_finite())
+        .peekable();
+    sizes.peek().is_none() || sizes.any(|(neutral, [low, high])| neutral < low || neutral > high)
+}
+
+pub(crate) fn moves_in_steps(placed: &Placed) -> bool {
     match placed.action() {
         Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
         _ => false,
@@ -355,8 +360,10 @@ fn judge_once(
                 misfit: rival.fit.objective - set.fit.objective,
             })
             .collect();
+        let placed = &set.effects()[i];
         list.push(Judged {
-            placed: set.effects()[i].clone(),
+            placed: placed.clone(),
+            scale: search.scale_at(&placed.at),
             probability: shares[0],
             swap_probabilities: shares[2..].to_vec(),
             worth: set.evidence - subset.evidence,
@@ -383,6 +390,37 @@ fn judge_once(
         }
     }
     Ok((list, better))
+}
+
+/// Adds to named nominal parameters the dynamics that turn into them where their own mode is out of
+/// sight. `settled` is the named set with all other nominal parameters under their prior, as the dynamics
+/// leave them; `set` is the set as it was judged, with the others held.
+pub(crate) fn add_rivals_out_of_sight(
+    search: &Search<'_>,
+    set: &Hypothesis,
+    settled: &Hypothesis,
+    judged: &mut [Judged],
+) -> Result<(), EstimateError> {
+    for (i, judged) in judged.iter_mut().enumerate() {
+        let mut rivals = search.grow(settled, i)?;
+        rivals.retain(|rival| identified(rival, settled));
+        let mut evidence = vec![settled.evidence];
+        evidence.extend(rivals.iter().map(|rival| rival.evidence));
+        let shares = probabilities(&evidence);
+        for (rival, share) in rivals.iter().zip(&shares[1..]) {
+            let Some(placed) = replacement(settled, rival) else {
+                continue;
+            };
+            judged.swap_probabilities.push(judged.probability * share);
+            judged.swaps.push(Swap {
+                placed: placed.clone(),
+                evidence: set.evidence + rival.evidence - settled.evidence,
+                misfit: rival.fit.objective - settled.fit.objective,
+            });
+        }
+        judged.probability *= shares[0];
+    }
+    Ok(())
 }
 
 /// A rival that contains an effect of the set and moves no output by more than the simulation may

@@ -267,10 +267,18 @@ pub trait Effect: Sync + Send {
     }
 
     /// Starting values that grow out of the fitted values of a special case ([`Effect::contains`]) or
-    /// of what it turns into ([`Effect::turns_into`]); none where these values are out of reach.
-    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
-        let _ = (values, scale);
+    /// of what it turns into ([`Effect::turns_into`]), by its kind; none where these values are out of
+    /// reach.
+    fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        let _ = (kind, values, scale);
         vec![]
+    }
+
+    /// Why fitted values, with their intervals, look like those of something else that this law imitates;
+    /// `None` where nothing speaks against it.
+    fn doubt(&self, values: &[f64], ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+        let _ = (values, ci95, scale);
+        None
     }
 
     /// Makes the events of an effect that strikes at random (lost samples, spikes), for generated

@@ -343,7 +343,7 @@ fn verify_special_cases_are_in_the_catalogue_at_the_same_places() {
                 "{place}, which contains more"
             );
             let fitted = special.starts(&scale()).swap_remove(0);
-            let grown = effect.grown_from(&fitted, &scale());
+            let grown = effect.grown_from(special.kind(), &fitted, &scale());
             assert!(!grown.is_empty(), "{place}: nothing grows out of it");
             for values in grown {
                 assert_eq!(values.len(), effect.parameters().len(), "{place}");
@@ -357,16 +357,21 @@ fn verify_special_cases_are_in_the_catalogue_at_the_same_places() {
 
 #[test]
 fn verify_what_dynamics_turn_into_lets_them_grow_at_the_same_place() {
+    // Every member to the ground as well.
+    let damper =
+        "[[damper]]\nname = \"drive\"\nbetween = [\"carriage\", \"ground\"]\ndamping = 9.0\n";
+    let model = Model::from_toml(&format!("{}\n{damper}", common::MODEL)).unwrap();
     let mut count = 0;
     for effect in catalogue() {
         for limit in effect.turns_into() {
             let pair = format!("{} turns into {limit}", effect.kind());
             let limit = simgap_effects::find(limit).unwrap_or_else(|| panic!("{pair}"));
-            let at = sites(&model(), effect.site());
-            let places = sites(&model(), limit.site());
+            let at = sites(&model, effect.site());
+            let places = sites(&model, limit.site());
             assert!(at.iter().all(|at| places.contains(at)), "{pair}");
             // One of a smaller and a larger value is in reach, the other is not.
-            let grown = [0.8, 1.25].map(|factor| effect.grown_from(&[factor], &scale()));
+            let grown =
+                [0.8, 1.25].map(|factor| effect.grown_from(limit.kind(), &[factor], &scale()));
             assert!(grown.iter().any(Vec::is_empty), "{pair}");
             for values in grown.concat() {
                 let mut physical = values.clone();

@@ -125,7 +125,8 @@ fn verify_presliding_friction_at_its_limits() {
 
 #[test]
 fn verify_presliding_friction_grows_from_coulomb_friction() {
-    let grown = effect("presliding_friction").grown_from(&[33.0], &common::scale());
+    let grown =
+        effect("presliding_friction").grown_from("coulomb_friction", &[33.0], &common::scale());
     assert!(grown.len() > 1);
     assert!(grown.iter().all(|values| values[0] == 33.0));
     // The presliding displacements differ by more than a factor of five.

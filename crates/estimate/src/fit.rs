@@ -15,6 +15,7 @@
 
 use simgap_simulate::LANES;
 
+use crate::information::information;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, Signals, discrepancies, discrepancies_of, linearise, refresh};
 use crate::normal::{damped_step, normal_equations, variances};
@@ -40,6 +41,9 @@ pub struct Fit {
     pub variance: Vec<f64>,
     /// Intervals of the effects' parameters, effect by effect.
     pub intervals: Vec<Vec<Interval>>,
+    /// Information of the data on the effects' parameters, nominal ones aside: its eigenvalues, each
+    /// parameter in units of its distance from where it does nothing.
+    pub information: Vec<f64>,
     /// Discrepancies of each run and channel at the estimate.
     pub discrepancy: Vec<Signals>,
     /// Steps taken.
@@ -51,6 +55,9 @@ const NORMAL_95: f64 = 1.959_964;
 /// λ of (4) at the start, and how often it is raised before a step is given up.
 const FIRST_DAMPING: f64 = 1e-4;
 const MOST_DAMPINGS: usize = 8;
+/// Factor on the squared discrepancy beyond which the sensitivities of a fit are no longer kept: where so
+/// much has changed, the plant answers in another way.
+const STALE: f64 = 2.0;
 
 /// Fits a set of effects, the nominal parameters under their prior, and the initial states.
 ///
@@ -90,6 +97,8 @@ pub(crate) fn fit_with(
     })?;
     // Whether every sensitivity belongs to this point.
     let mut exact = !weights.keep_nuisance;
+    // Objective where the kept sensitivities were taken.
+    let mut taken_at = objective;
     let mut damping = FIRST_DAMPING;
     let mut iterations = 0;
     while iterations < weights.most_steps {
@@ -105,7 +114,7 @@ pub(crate) fn fit_with(
             }
             // The kept sensitivities mislead: one more try with all of them fresh.
             at = linearise(problem, &layout, &theta)?;
-            (exact, damping) = (true, FIRST_DAMPING);
+            (exact, damping, taken_at) = (true, FIRST_DAMPING, objective);
             continue;
         };
         let gain = objective - next.objective;
@@ -114,10 +123,14 @@ pub(crate) fn fit_with(
             discrepancy: next.discrepancy,
             columns: vec![],
         };
+        let is_far = taken_at - objective > merit.of_a_factor(STALE);
+        if is_far {
+            taken_at = objective;
+        }
+        let keep = weights.keep_nuisance && !is_far;
         let mut kept = at.columns;
         at = refresh(problem, &layout, &theta, here, |run, place| {
-            (weights.keep_nuisance && layout.is_nuisance(place))
-                .then(|| std::mem::take(&mut kept[run][place]))
+            (keep && layout.is_nuisance(place)).then(|| std::mem::take(&mut kept[run][place]))
         })?;
         if gain >= weights.converged {
             exact = !weights.keep_nuisance;
@@ -126,7 +139,7 @@ pub(crate) fn fit_with(
         } else {
             // A small gain along kept sensitivities does not say that there is no larger one.
             at = linearise(problem, &layout, &theta)?;
-            exact = true;
+            (exact, taken_at) = (true, objective);
         }
     }
     Ok(finish(&layout, &merit, &theta, at, iterations))
@@ -219,6 +232,7 @@ fn finish(layout: &Layout, merit: &Merit, theta: &[f64], at: Linearised, iterati
     let (hessian, _) = normal_equations(layout, theta, &at, &merit.weights(&variance));
     let all: Vec<usize> = (0..layout.len()).collect();
     let spread = variances(&hessian, &all);
+    let information = information(layout, &hessian, theta);
     let estimate = layout.unpack(theta);
     let interval = |e: usize, i: usize, value: f64| {
         let Some(entry) = layout.entry(e, i) else {
@@ -248,6 +262,7 @@ fn finish(layout: &Layout, merit: &Merit, theta: &[f64], at: Linearised, iterati
         objective,
         variance,
         intervals,
+        information,
         discrepancy: at.discrepancy,
         iterations,
     }
@@ -271,6 +286,11 @@ impl Merit {
                 .collect(),
             count: problem.runs.iter().map(|run| run.len as f64).sum(),
         }
+    }
+
+    /// What a factor on the squared discrepancy of every channel changes in J.
+    pub(crate) fn of_a_factor(&self, factor: f64) -> f64 {
+        0.5 * self.independence.iter().sum::<f64>() * self.count * factor.ln()
     }
 
     pub(crate) fn variance(&self, discrepancy: &[Signals]) -> Vec<f64> {

@@ -223,6 +223,17 @@ impl Layout {
         at(&self.shared_values).or_else(|| at(&self.own_values).map(|own| self.run_offset(0) + own))
     }
 
+    /// Every entry of an effect, with the effect and which of its values it is.
+    pub(crate) fn effect_entries(&self) -> impl Iterator<Item = (usize, &Placed, usize)> {
+        let shared = self.shared_values.iter().enumerate();
+        let own = (0..self.run_count).flat_map(move |run| {
+            let values = self.own_values.iter().enumerate();
+            values.map(move |(i, key)| (self.run_offset(run) + i, key))
+        });
+        let each = shared.chain(own);
+        each.map(|(entry, &(e, i))| (entry, &self.effects[e], i))
+    }
+
     pub(crate) fn pack(&self, start: &Start) -> Vec<f64> {
         let effects = &start.effects;
         let shared = self.shared_values.iter();

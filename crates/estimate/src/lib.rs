@@ -65,6 +65,7 @@
 //! ```
 
 mod fit;
+mod information;
 mod initial;
 mod layout;
 mod linearise;

@@ -108,10 +108,10 @@ pub(crate) fn variances(hessian: &Mat<f64>, free: &[usize]) -> Vec<f64> {
     variance
 }
 
-type Factor = faer::linalg::solvers::Llt<f64>;
+pub(crate) type Factor = faer::linalg::solvers::Llt<f64>;
 
 /// Cholesky factor of H scaled to a unit diagonal, over the free entries that are seen.
-fn factorise(
+pub(crate) fn factorise(
     hessian: &Mat<f64>,
     free: &[usize],
     damping: f64,

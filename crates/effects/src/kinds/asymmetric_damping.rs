@@ -89,6 +89,15 @@ impl Effect for AsymmetricDamping {
         }))
     }
 
+    fn doubt(&self, _: &[f64], ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
+        let &[[low, high], [other_low, other_high]] = ci95 else {
+            return None;
+        };
+        (low <= other_high && other_low <= high).then_some(
+            "its two dampings are the same but for their intervals: one damping would do",
+        )
+    }
+
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
         &[(
             "quadratic_damping",

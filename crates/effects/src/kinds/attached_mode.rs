@@ -145,7 +145,7 @@ impl Effect for AttachedMode {
     }
 
     /// A factor q on the host is a mass m (q − 1) that moves with it.
-    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+    fn grown_from(&self, _kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         let added = (values[0] - 1.0) * scale.mass_kg;
         if !(added > 0.0 && added.is_finite()) {
             return vec![];

@@ -131,12 +131,16 @@ impl Effect for FlexibleSupport {
     }
 
     fn turns_into(&self) -> &'static [&'static str] {
-        &["stiffness_error"]
+        &["stiffness_error", "damping_error"]
     }
 
-    /// A factor q on the spring is a massless support of stiffness k q/(1 − q) behind it.
-    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
-        let factor = values[0];
+    /// A massless support of stiffness k q/(1 − q) behind a spring and a damper is a factor q on the
+    /// spring and, well below where the damper is stiffer than the spring, q² on the damper.
+    fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        let factor = match kind {
+            "damping_error" => values[0].sqrt(),
+            _ => values[0],
+        };
         if !(factor > 0.0 && factor < 1.0) {
             return vec![];
         }
@@ -157,10 +161,16 @@ impl Effect for FlexibleSupport {
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
-        &[(
-            "stiffness_error",
-            "well below the mode of the support it is a softer spring",
-        )]
+        &[
+            (
+                "stiffness_error",
+                "well below the mode of the support it is a softer spring",
+            ),
+            (
+                "damping_error",
+                "well below the mode of the support it takes more off the damping than off the stiffness",
+            ),
+        ]
     }
 
     fn experiment(&self) -> &'static str {

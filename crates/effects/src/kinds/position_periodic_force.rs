@@ -87,6 +87,13 @@ impl Effect for PositionPeriodicForce {
         }))
     }
 
+    fn doubt(&self, values: &[f64], _: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+        let [low, high] = scale.displacement_range_m;
+        (values[2] > high - low).then_some(
+            "its period is longer than the travel, and part of a period is any smooth curve",
+        )
+    }
+
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
         &[
             (

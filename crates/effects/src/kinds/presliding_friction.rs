@@ -104,7 +104,7 @@ impl Effect for PreslidingFriction {
         &["coulomb_friction"]
     }
 
-    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+    fn grown_from(&self, _kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         [0.02, 0.15, 0.8]
             .map(|share| vec![values[0], share * scale.displacement_m, 0.0])
             .to_vec()

@@ -98,7 +98,7 @@ impl Effect for StribeckFriction {
         &["coulomb_friction"]
     }
 
-    fn grown_from(&self, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+    fn grown_from(&self, _kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         SHARES
             .iter()
             .map(|share| {

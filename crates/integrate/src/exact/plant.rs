@@ -261,7 +261,8 @@ impl<'a> Plant<'a> {
             let compliance = c.dry_velocity[own];
             let start = self.start_velocity[i];
             let level = |speed: f64| law.dry_level(speed).unwrap_or(0.0);
-            let dry = dry_force(level, start, free_velocity, compliance);
+            let before = self.dry_end[i];
+            let dry = dry_force(level, before, start, free_velocity, compliance);
             (self.dry_force[i], self.dry_end[i]) = (dry.mean, dry.end);
             displacement -= c.dry_displacement[own] * self.dry_force[i];
             velocity -= c.dry_velocity[own] * self.dry_force[i];
@@ -327,10 +328,19 @@ pub(super) struct Dry {
 /// mean = F sgn(v₀) (2θ − 1)  when the other forces exceed the friction at rest, else v* / G
 /// ```
 ///
+/// A motion that is prescribed does not mind the force; where it pauses, the force stays what it was
+/// `before`, up to what friction can hold.
+///
 /// `level` is the friction at a speed. Every case is computed and one chosen, so that the lanes of
 /// [`super::lanes`] can take different ones.
 #[inline(always)]
-pub(super) fn dry_force(level: impl Fn(f64) -> f64, start: f64, free: f64, compliance: f64) -> Dry {
+pub(super) fn dry_force(
+    level: impl Fn(f64) -> f64,
+    before: f64,
+    start: f64,
+    free: f64,
+    compliance: f64,
+) -> Dry {
     let level = |speed: f64| level(speed).max(0.0);
     let sign = |velocity: f64| choose(velocity == 0.0, 0.0, 1.0_f64.copysign(velocity));
     let at_rest = level(0.0);
@@ -351,8 +361,8 @@ pub(super) fn dry_force(level: impl Fn(f64) -> f64, start: f64, free: f64, compl
     let share = start / (start - ahead);
     let turned = level(0.5 * (start.abs() + ahead.abs())) * way * (2.0 * share - 1.0);
     let turned_end = -way * level(ahead.abs());
-    // A prescribed motion does not mind.
-    let carried = level(free.abs()) * sign(free);
+    let pauses = before.max(-at_rest).min(at_rest);
+    let carried = choose(free == 0.0, pauses, level(free.abs()) * sign(free));
 
     let prescribed = compliance <= 0.0;
     let slides = choose_if(rests, free.abs() > holds, ahead * way >= 0.0);

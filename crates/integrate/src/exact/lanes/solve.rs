@@ -34,7 +34,13 @@ pub(super) fn solve(laws: &impl LawLanes, element: &mut ElementLanes) {
             // What sticks ends a step at rest but for rounding.
             let rests = bits(start.0[l].abs() <= AT_REST * without.0[l].abs());
             let start = choose(rests, 0.0, start.0[l]);
-            let now = dry_force(level, start, free, dry_give_velocity.0[l]);
+            let now = dry_force(
+                level,
+                element.dry_end.0[l],
+                start,
+                free,
+                dry_give_velocity.0[l],
+            );
             dry.0[l] = now.mean;
             end.0[l] = choose(open.0[l], now.end, end.0[l]);
             displacement.0[l] -= dry_give.0[l] * now.mean;
