@@ -1,15 +1,16 @@
 //! How much the data speak for a set of effects.
 //!
 //! ```text
-//! E = −J − ½ k ln N_eff − p ln(σ_free / σ_0)                      (1)
-//! N_eff = Σ_c ρ_c N,   ρ_c = N_eff,c / N of the residual          (2)
-//! p_i = exp(E_i / T) / Σ_j exp(E_j / T)                           (3)
+//! E = −J − ½ k ln N_eff − ½ Σ_j min(λ_j, ln N_eff) − p ln(σ_free / σ_0)     (1)
+//! N_eff = Σ_c ρ_c N,   ρ_c = N_eff,c / N of the residual                    (2)
+//! p_i = exp(E_i / T) / Σ_j exp(E_j / T)                                     (3)
 //! ```
 //!
-//! J is the objective of the fit, k the number of parameters of the effects, p that of nominal
-//! parameters which left the prior σ_0 for one as wide as σ_free. (1) is the Bayesian information
-//! criterion with the number of samples that are independent, \[Schwarz1978\]; the temperature T in
-//! (3) allows for what (2) does not see.
+//! J is the objective of the fit, k the number of parameters of the effects but for hidden dynamics, λ_j
+//! the information on those of hidden dynamics, p the number of nominal parameters which left the prior
+//! σ_0 for one as wide as σ_free. (1) is the Bayesian information criterion with the number of samples
+//! that are independent, \[Schwarz1978\], where a direction that no data see costs no more than the fit
+//! would lose without it; the temperature T in (3) allows for what (2) does not see.
 
 use simgap_effects::{Family, Parameter, Placed};
 use simgap_estimate::{Fit, Problem, Weights};
@@ -46,23 +47,31 @@ pub(crate) fn effective_samples(problem: &Problem, weights: &Weights) -> f64 {
 pub(crate) fn evidence(fit: &Fit, effective_samples: f64) -> f64 {
     let effects = fit.estimate.effects.iter();
     let freed = effects.filter(|placed| is_nominal(placed)).count() as f64;
-    -fit.objective - penalty(&fit.information, effective_samples) - freed * FREED
+    -fit.objective - penalty(fit, effective_samples) - freed * FREED
 }
 
-/// Σ_j of (1).
-fn penalty(information: &[f64], effective_samples: f64) -> f64 {
+/// The second and the third term of (1).
+fn penalty(fit: &Fit, effective_samples: f64) -> f64 {
     let most = effective_samples.ln();
-    0.5 * information.iter().map(|known| known.min(most)).sum::<f64>()
+    let hidden = fit.information.iter().map(|known| known.min(most));
+    let known = count(fit, |family| family != Family::Dynamics);
+    0.5 * (known * most + hidden.sum::<f64>())
 }
 
-/// k of (1): parameters of the effects. One that every record has of its own counts once for each.
+/// Parameters of the effects, whatever the data see of them. One that every record has of its own counts
+/// once for each.
 pub(crate) fn freedom(fit: &Fit) -> f64 {
+    count(fit, |_| true)
+}
+
+/// Parameters of the effects of some families, nominal parameters aside.
+fn count(fit: &Fit, of: impl Fn(Family) -> bool) -> f64 {
     let runs = fit.estimate.initial.len();
-    let count = |parameter: &Parameter| if parameter.per_record { runs } else { 1 };
+    let times = |parameter: &Parameter| if parameter.per_record { runs } else { 1 };
     let effects = fit.estimate.effects.iter();
-    let effects = effects.filter(|placed| !is_nominal(placed));
+    let effects = effects.filter(|placed| !is_nominal(placed) && of(placed.effect.family()));
     let parameters = effects.flat_map(|placed| placed.effect.parameters());
-    parameters.map(count).sum::<usize>() as f64
+    parameters.map(times).sum::<usize>() as f64
 }
 
 fn is_nominal(placed: &Placed) -> bool {

@@ -1,9 +1,12 @@
-//! What the data know of the parameters of a set of effects.
+//! What the data know of the parameters of hidden dynamics.
 //!
-//! The eigenvalues of the information on the parameters, past all else that the fit adjusts, each
-//! parameter in units of its distance from where it does nothing (of its value where there is no such
-//! point). Without a direction of information λ, the objective of a fit would be about λ/2 higher: what
-//! could as well be anything has none, however many parameters share it.
+//! ```text
+//! C_ij = (H⁻¹)_ij / (s_i s_j),   λ = 1 / eigenvalues of C                 (1)
+//! ```
+//!
+//! H is the information on all that a fit adjusts, s_i the distance of a value from where it does nothing (its
+//! size where there is no such point). Set to nothing along a direction of information λ, the objective
+//! would be about λ/2 higher: what could as well be anything has none, however many values share it.
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
@@ -12,27 +15,20 @@ use simgap_effects::{Family, Parameter};
 use crate::layout::Layout;
 use crate::normal::factorise;
 
-/// The eigenvalues, of the effects that are no nominal parameters. Only hidden dynamics can be out of sight
-/// and act all the same: the parameters of other effects count as known, as do all where the equations are
-/// singular.
+/// λ of (1), over the values of all hidden dynamics; infinite where H is singular.
 pub(crate) fn information(layout: &Layout, hessian: &Mat<f64>, theta: &[f64]) -> Vec<f64> {
-    let mut known = Vec::new();
-    let mut entries = Vec::new();
-    let mut size = Vec::new();
-    for (entry, placed, place) in layout.effect_entries() {
-        if placed.effect.family() == Family::NominalParameter {
-            continue;
-        }
-        if placed.effect.family() != Family::Dynamics {
-            known.push(f64::INFINITY);
-            continue;
-        }
-        entries.push(entry);
-        size.push(own_size(&placed.effect.parameters()[place], theta[entry]) / layout.scale[entry]);
-    }
-    let of_dynamics = eigenvalues(hessian, &entries, &size);
-    known.extend(of_dynamics.unwrap_or_else(|| vec![f64::INFINITY; entries.len()]));
-    known
+    let hidden = layout.effect_entries();
+    let hidden = hidden.filter(|(_, placed, _)| placed.effect.family() == Family::Dynamics);
+    let (entries, size): (Vec<usize>, Vec<f64>) = hidden
+        .map(|(entry, placed, place)| {
+            let parameter = &placed.effect.parameters()[place];
+            (
+                entry,
+                own_size(parameter, theta[entry]) / layout.scale[entry],
+            )
+        })
+        .unzip();
+    eigenvalues(hessian, &entries, &size).unwrap_or_else(|| vec![f64::INFINITY; entries.len()])
 }
 
 /// The distance of a value from where the effect vanishes.
