@@ -7,7 +7,7 @@ use simgap_effects::{Effect, Placed, find};
 use simgap_model::{Location, Model};
 use simgap_record::Record;
 
-use crate::{Equivalent, Level, foreign_effects};
+use crate::{Level, foreign_effects};
 
 /// What the right answer is, in the words of the contract.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -86,6 +86,27 @@ pub(crate) fn known(kind: &str) -> Option<&'static dyn Effect> {
         all.find(|effect| effect.kind() == kind)
     };
     find(kind).or_else(foreign)
+}
+
+/// What cannot be told from an effect on the plant of a case, whatever the data.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Equivalent {
+    /// Catalogue name.
+    pub kind: String,
+    /// Where it would act.
+    pub at: Location,
+    /// Why the two are the same.
+    pub because: String,
+}
+
+impl From<simgap_effects::Equivalent> for Equivalent {
+    fn from(same: simgap_effects::Equivalent) -> Equivalent {
+        Equivalent {
+            kind: same.kind.to_string(),
+            at: same.at,
+            because: same.because.to_string(),
+        }
+    }
 }
 
 /// What the diagnosis is not told.

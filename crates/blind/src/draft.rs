@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
-use simgap_effects::{Effect, Family, Placed, find, sites};
+use simgap_effects::{Effect, Family, Placed, equivalents, find, same_place, sites};
 use simgap_model::{Location, Model};
 
 use crate::bench::Bench;
-use crate::equivalent::{equivalents, same_place};
 use crate::explained::is_explained;
 use crate::gap::{std, visible_gap};
 use crate::plant::Plant;

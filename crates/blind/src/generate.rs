@@ -1,6 +1,6 @@
 //! From a seed and a recipe to a case.
 
-use simgap_effects::{Action, Effect, Family, Placed};
+use simgap_effects::{Effect, Family, Placed, equivalents_beside};
 use simgap_record::{Channel, Record};
 
 use crate::bench::Bench;
@@ -11,7 +11,7 @@ use crate::gap::std;
 use crate::plant::{self, Plant, input_unit, output_unit};
 use crate::random::Random;
 use crate::recipe::known_kinds;
-use crate::{BlindError, Level, Recipe, equivalents};
+use crate::{BlindError, Level, Recipe};
 
 /// Samples of a record, lowest and highest draw.
 const SAMPLES: [f64; 2] = [1000.0, 6000.0];
@@ -272,36 +272,14 @@ fn truth(recipe: &Recipe, draft: &Draft, signals: Vec<Vec<Vec<f64>>>) -> Truth {
         withheld: false,
         effects: draft.effects.iter().map(Hidden::of).collect(),
         equivalents: (0..draft.effects.len())
-            .map(|i| equivalents_beside_others(draft, i))
+            .map(|i| equivalents_beside(&draft.effects, i, &draft.plant.model))
+            .map(|same| same.into_iter().map(Into::into).collect())
             .collect(),
         deviations: draft.deviations.iter().map(Hidden::of).collect(),
         noise_share: draft.noise_share,
         gaps: draft.gaps.clone(),
         signals,
     }
-}
-
-/// Equivalences on the plant as the other effects leave it: a missing spring beside the effect holds
-/// the plant, a nonlinear force breaks every equivalence.
-fn equivalents_beside_others(draft: &Draft, i: usize) -> Vec<crate::Equivalent> {
-    let mut model = draft.plant.model.clone();
-    for (j, placed) in draft.effects.iter().enumerate() {
-        if j == i {
-            continue;
-        }
-        match placed.action() {
-            Action::Model(change) => change(&mut model, &placed.at),
-            Action::Member(_) | Action::Mode { .. } => return vec![],
-            Action::Force(_)
-                if !["constant_force", "harmonic_force"].contains(&placed.effect.kind()) =>
-            {
-                return vec![];
-            }
-            _ => {}
-        }
-    }
-    let placed = &draft.effects[i];
-    equivalents(placed.effect.kind(), &placed.at, &model)
 }
 
 #[cfg(test)]

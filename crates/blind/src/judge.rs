@@ -1,7 +1,8 @@
 //! What became of each effect of the truth.
 
+use simgap_effects::same_place;
+
 use crate::case::known;
-use crate::equivalent::same_place;
 use crate::score::{Named, Outcome, Verdict};
 use crate::{Hidden, Status, Truth};
 

@@ -30,7 +30,6 @@ mod bench;
 mod case;
 mod closing;
 mod draft;
-mod equivalent;
 mod error;
 mod excitation;
 mod explained;
@@ -49,9 +48,8 @@ mod table;
 mod totals;
 
 pub use bench::OVERSAMPLING;
-pub use case::{Case, Hidden, Status, Truth};
+pub use case::{Case, Equivalent, Hidden, Status, Truth};
 pub use closing::{Closing, Signals, gap_to};
-pub use equivalent::{Equivalent, equivalents};
 pub use error::BlindError;
 pub use foreign::foreign_effects;
 pub use generate::generate;

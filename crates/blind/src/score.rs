@@ -1,9 +1,9 @@
 //! One answer held against one truth.
 
+use simgap_effects::same_place;
 use simgap_model::Location;
 
 use crate::closing::{Closing, Signals, gap_to};
-use crate::equivalent::same_place;
 use crate::judge::{hit, of_clean, of_effect, of_foreign};
 use crate::{Level, Status, Truth};
 
@@ -220,7 +220,7 @@ impl Score {
 /// true effects and parameters.
 ///
 /// An effect of the truth is `Right` when it is named at its place, `Equivalent` when one of its
-/// [`crate::equivalents`] is. Named nominal parameters beside the effect are excused where the case
+/// [`simgap_effects::equivalents`] is. Named nominal parameters beside the effect are excused where the case
 /// has small errors of them ([`Truth::deviations`]).
 ///
 /// ```

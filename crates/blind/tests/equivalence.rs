@@ -1,7 +1,8 @@
 //! The table of equivalents, held against simulations.
 #![allow(clippy::unwrap_used)]
 
-use simgap_blind::{Level, Recipe, Status, equivalents, generate};
+use simgap_blind::{Level, Recipe, Status, generate};
+use simgap_effects::equivalents;
 use simgap_effects::{Action, Placed, Sampled, find};
 use simgap_model::{Location, Model};
 use simgap_simulate::{Run, Simulator};

@@ -17,8 +17,9 @@ const POINTS: usize = 48;
 const POINTS_OF_ONE: usize = 16;
 /// Values lie within this factor of the starting values.
 const SPREAD: f64 = 10.0;
-/// Sets fitted, and from how many values of each.
-const FITTED: usize = 12;
+/// Sets fitted of effects with a shape and of others, and from how many values of each.
+const FITTED_OF_SHAPE: usize = 12;
+const FITTED_OF_ONE: usize = 6;
 const STARTS_OF_EACH: usize = 2;
 /// Sets of these that are finished, and in how many steps: from afar it takes more.
 const FINISHED: usize = 3;
@@ -45,16 +46,21 @@ impl Search<'_> {
                 best
             })
             .collect::<Vec<_>>();
-        let mut best: Vec<Score> = scored.into_iter().flatten().collect();
-        best.sort_by(|a, b| {
-            b.gain
-                .total_cmp(&a.gain)
-                .then_with(|| name(&a.start).cmp(&name(&b.start)))
-        });
-        best.truncate(FITTED);
-        let starts: Vec<Start> = best
+        let best = |shaped: bool, most: usize| {
+            let mut best: Vec<&Score> = scored.iter().flatten().collect();
+            best.retain(|score| has_shape(score.start.effect) == shaped);
+            best.sort_by(|a, b| {
+                let by_name = || name(&a.start).cmp(&name(&b.start));
+                b.gain.total_cmp(&a.gain).then_with(by_name)
+            });
+            best.truncate(most);
+            best
+        };
+        let mut best_of_all = best(true, FITTED_OF_SHAPE);
+        best_of_all.extend(best(false, FITTED_OF_ONE));
+        let starts: Vec<Start> = best_of_all
             .into_iter()
-            .map(|score| add(&base.fit.estimate, score.start))
+            .map(|score| add(&base.fit.estimate, score.start.clone()))
             .collect();
         let mut fitted = self.fit_all(&starts, linear)?;
         let promising: Vec<Start> = fitted
@@ -67,25 +73,35 @@ impl Search<'_> {
     }
 }
 
-/// Whether an effect of the machine answers to more than in proportion to its size.
+/// Whether an effect of the machine may answer to more than in proportion to its size.
 fn is_curved(effect: &dyn Effect) -> bool {
     matches!(effect.family(), Family::Force | Family::Dynamics) && effect.clock().is_none()
 }
 
-/// Values about each start of an effect in turn, by a low-discrepancy sequence in their logarithms; of
-/// sizes that may have either sign, in both.
+/// Whether it has, besides its size, values that shape it.
+fn has_shape(effect: &dyn Effect) -> bool {
+    let shared = effect.parameters().iter().filter(|p| !p.per_record);
+    shared.clone().count() > 1
+        && shared
+            .clone()
+            .any(|p| p.neutral.is_none_or(f64::is_infinite))
+}
+
+/// Values about each start of an effect in turn, by a low-discrepancy sequence in their logarithms; one size
+/// that may have either sign, in both.
 fn points(candidate: &Candidate, scale: &SiteScale) -> Vec<Vec<f64>> {
     let parameters = candidate.effect.parameters();
     let starts = candidate.effect.starts(scale);
-    let moved = |number: usize, start: &[f64]| {
+    let shaped = has_shape(candidate.effect);
+    let moved = |i: usize, start: &[f64]| {
         let values = parameters.iter().zip(start).enumerate();
         let mut values: Vec<f64> = values
             .map(|(k, (parameter, value))| {
                 if parameter.per_record {
                     return *value;
                 }
-                let share = radical_inverse(number, PRIMES[k % PRIMES.len()]);
-                let either = parameter.lower < 0.0 && parameter.upper > 0.0;
+                let share = radical_inverse(i + 1, PRIMES[k % PRIMES.len()]);
+                let either = !shaped && parameter.lower < 0.0 && parameter.upper > 0.0;
                 // The halves of a range each have all of the spread.
                 let (sign, share) = match 2.0 * share {
                     twice if !either => (1.0, 0.5 * twice),
@@ -99,13 +115,10 @@ fn points(candidate: &Candidate, scale: &SiteScale) -> Vec<Vec<f64>> {
         candidate.effect.make_physical(&mut values);
         values
     };
-    let shared = parameters.iter().filter(|p| !p.per_record).count();
-    let most = if shared > 1 { POINTS } else { POINTS_OF_ONE };
-    let each = most / starts.len().max(1);
-    starts
-        .iter()
-        .flat_map(|start| (1..=each).map(|number| moved(number, start)))
-        .collect()
+    let most = if shaped { POINTS } else { POINTS_OF_ONE };
+    let count = if starts.is_empty() { 0 } else { most };
+    let each = starts.iter().cycle().take(count);
+    each.enumerate().map(|(i, start)| moved(i, start)).collect()
 }
 
 /// The digits of a number in a base, mirrored at the point: evenly spread over 0 to 1.

@@ -1,7 +1,7 @@
 //! The answer in words and numbers.
 
 use rayon::prelude::*;
-use simgap_effects::{Family, Placed, find};
+use simgap_effects::{Family, Placed, find, same_place};
 use simgap_estimate::{EstimateError, Problem, Weights};
 use simgap_model::Location;
 
@@ -234,21 +234,30 @@ fn rivals(answer: &Answer, judged: &Judged) -> Vec<Rival> {
         b.evidence.total_cmp(&a.evidence).then(by_fit)
     });
     let own = judged.placed.effect.kind();
-    let mut kinds = vec![own];
-    for swap in &close {
-        let kind = swap.placed.effect.kind();
-        if kinds.len() <= MOST_RIVALS && !kinds.contains(&kind) {
-            kinds.push(kind);
+    let same = judged.same.iter().map(|other| Rival {
+        kind: other.kind.to_string(),
+        at: other.at.clone(),
+        because: other.because.to_string(),
+    });
+    let close = close.into_iter().map(|swap| Rival {
+        kind: swap.placed.effect.kind().to_string(),
+        at: swap.placed.at.clone(),
+        because: because(answer, judged, swap),
+    });
+    let mut kinds = vec![own.to_string()];
+    let mut rivals: Vec<Rival> = Vec::new();
+    for rival in same.chain(close) {
+        if kinds.len() <= MOST_RIVALS && !kinds.contains(&rival.kind) {
+            kinds.push(rival.kind.clone());
+        }
+        let is_new = rivals
+            .iter()
+            .all(|known| known.kind != rival.kind || !same_place(&known.at, &rival.at));
+        if kinds.contains(&rival.kind) && is_new {
+            rivals.push(rival);
         }
     }
-    let kept = close.into_iter();
-    kept.filter(|swap| kinds.contains(&swap.placed.effect.kind()))
-        .map(|swap| Rival {
-            kind: swap.placed.effect.kind().to_string(),
-            at: swap.placed.at.clone(),
-            because: because(answer, judged, swap),
-        })
-        .collect()
+    rivals
 }
 
 fn is_as_likely(answer: &Answer, swap: &Swap) -> bool {

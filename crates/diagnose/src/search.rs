@@ -5,7 +5,9 @@
 //! fitted on the full nonlinear simulation, and the next size starts from each survivor.
 
 use rayon::prelude::*;
-use simgap_effects::{Family, LINES, Placed, SiteScale};
+use simgap_effects::{
+    Equivalent, Family, LINES, Placed, SiteScale, equivalents_beside, same_place,
+};
 use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
 };
@@ -189,6 +191,19 @@ impl<'a> Search<'a> {
         known.map_or_else(|| SiteScale::plain(0.0, 0.0, 0.0), |(_, scale)| *scale)
     }
 
+    /// What is the same thing by another name as the i-th effect of a set, on this plant, whatever the data; of
+    /// the kinds that are looked for.
+    pub(crate) fn same(&self, set: &Hypothesis, i: usize) -> Vec<Equivalent> {
+        let mut same = equivalents_beside(set.effects(), i, &self.problem.model);
+        same.retain(|other| {
+            let mut candidates = self.candidates.iter();
+            candidates.any(|(known, _)| {
+                known.effect.kind() == other.kind && same_place(&known.at, &other.at)
+            })
+        });
+        same
+    }
+
     /// How much more a set is penalised than another for its parameters.
     pub(crate) fn penalty(&self, larger: &Hypothesis, smaller: &Hypothesis) -> f64 {
         let count = |set: &Hypothesis| freedom(&set.fit);
@@ -252,10 +267,18 @@ impl<'a> Search<'a> {
             // A start from which the plant runs away is no hypothesis.
             .filter_map(|start| Some(self.hypothesis(base.fit(start, &weights).ok()?)))
             .collect::<Vec<_>>();
-        fitted.retain(|hypothesis| hypothesis.fit.objective.is_finite());
+        fitted.retain(|set| set.fit.objective.is_finite() && self.means_what_it_says(set));
         sort(&mut fitted);
         unique(&mut fitted);
         Ok(fitted)
+    }
+
+    fn means_what_it_says(&self, set: &Hypothesis) -> bool {
+        let mut effects = set.effects().iter();
+        effects.all(|placed| {
+            let scale = self.scale_at(&placed.at);
+            placed.effect.keeps_its_meaning(&placed.values, &scale)
+        })
     }
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.

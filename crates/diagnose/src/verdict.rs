@@ -1,7 +1,7 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Action, Placed, SiteScale};
+use simgap_effects::{Action, Equivalent, Placed, SiteScale};
 use simgap_estimate::{
     EstimateError, Fit, Interval, Problem, Start, Weights, fit, fit_initial_states,
 };
@@ -70,6 +70,8 @@ pub(crate) struct Judged {
     pub(crate) placed: Placed,
     /// Typical sizes at its place.
     pub(crate) scale: SiteScale,
+    /// What is the same thing by another name on this plant.
+    pub(crate) same: Vec<Equivalent>,
     pub(crate) probability: f64,
     /// Evidence lost without it.
     pub(crate) worth: f64,
@@ -364,6 +366,7 @@ fn judge_once(
         list.push(Judged {
             placed: placed.clone(),
             scale: search.scale_at(&placed.at),
+            same: search.same(set, i),
             probability: shares[0],
             swap_probabilities: shares[2..].to_vec(),
             worth: set.evidence - subset.evidence,

@@ -274,6 +274,13 @@ pub trait Effect: Sync + Send {
         vec![]
     }
 
+    /// Whether values are still what the kind says, at a place of these sizes; a fit that leaves them is no
+    /// hypothesis.
+    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+        let _ = (values, scale);
+        true
+    }
+
     /// Why fitted values, with their intervals, look like those of something else that this law imitates;
     /// `None` where nothing speaks against it.
     fn doubt(&self, values: &[f64], ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {

@@ -22,6 +22,7 @@
 
 mod catalogue;
 mod effect;
+mod equivalent;
 mod error;
 mod free;
 mod kinds;
@@ -32,7 +33,8 @@ pub use catalogue::{catalogue, find};
 pub use effect::{
     Action, Clock, Effect, Family, LINES, LawOfModel, ModelChange, Parameter, SiteKind, SiteScale,
 };
+pub use equivalent::{Equivalent, equivalents, equivalents_beside};
 pub use error::EffectError;
 pub use free::free_laws;
-pub use place::{Placed, sites};
+pub use place::{Placed, same_place, sites};
 pub use signal_map::{Sampled, SignalMap};

@@ -146,6 +146,15 @@ const MASS: &str = "mass = \"name\"";
 const INPUT: &str = "input = \"channel\"";
 const CHANNEL: &str = "channel = \"name\"";
 
+/// Whether two places are one, whichever way round a pair is written.
+#[must_use]
+pub fn same_place(a: &Location, b: &Location) -> bool {
+    match (a, b) {
+        (Location::Between(a), Location::Between(b)) => same_pair(a, b),
+        _ => a == b,
+    }
+}
+
 impl SiteKind {
     /// The key that places an effect of this kind in a model file.
     #[must_use]

@@ -45,10 +45,10 @@ pub fn predict_all(jobs: &[Job<'_>]) -> Vec<Prediction> {
         }
     }
     let finish = |((job, prepared), raw): ((&Job<'_>, Result<Prepared, _>), Option<_>)| {
-        prepared.map(|_| {
+        prepared.map(|ready| {
             let keep = |map: &dyn simgap_effects::SignalMap| !(job.smooth && map.is_stepped());
             job.simulator
-                .deliver(job.run, raw.unwrap_or_default(), keep)
+                .deliver(job.run, &ready, raw.unwrap_or_default(), keep)
         })
     };
     jobs.iter().zip(prepared).zip(raw).map(finish).collect()

@@ -8,7 +8,11 @@ use crate::{Run, SimulateError, Simulator};
 /// Forces on the masses and motion of the bases, samples × masses or bases, row-major.
 #[derive(Default)]
 pub(crate) struct Drive {
+    /// What the propagator joins by straight lines, such that they push as the smooth curve through the
+    /// samples does.
     pub(crate) dof_force: Vec<f64>,
+    /// What the force at a sample is beyond that.
+    pub(crate) at_sample: Vec<f64>,
     pub(crate) base_displacement: Vec<f64>,
     pub(crate) base_velocity: Vec<f64>,
     pub(crate) base_acceleration: Vec<f64>,
@@ -111,6 +115,7 @@ impl Simulator {
                 drive.dof_force[sample * n + coupling.dof] += coupling.coefficient * value;
             }
         }
+        drive.at_sample = straighten(&mut drive.dof_force, n);
         Ok(drive)
     }
 
@@ -140,6 +145,36 @@ impl Simulator {
         }
         Ok(couplings)
     }
+}
+
+/// Replaces sampled forces on n masses by those whose straight lines push as the smooth curve through the
+/// samples does; returns what was taken away, sample by sample.
+///
+/// Straight lines between the samples of e^(iωt) are sinc²(ωh/2) of it, and harmonics about the sample rate,
+/// which masses do not follow. With s = sin²(ωh/2) = −δ²/4, the inverse is
+///
+/// ```text
+/// (ωh/2)²/s = 1 + s/3 + 8 s²/45 + ...,   f' = f − δ²f/12 + δ⁴f/90
+/// ```
+///
+/// off by 0.01 % at ten samples a cycle, where straight lines lose 3 %. Of a pulse, the sum and the first moment of what
+/// is added are zero. The last two samples at each end stay as they are.
+fn straighten(force: &mut [f64], n: usize) -> Vec<f64> {
+    let mut taken = vec![0.0; force.len()];
+    for dof in 0..n {
+        let at = |i: usize| force[i * n + dof];
+        for i in 2..(force.len() / n).saturating_sub(2) {
+            let near = at(i - 1) + at(i + 1);
+            let far = at(i - 2) + at(i + 2);
+            let second = near - 2.0 * at(i);
+            let fourth = far - 4.0 * near + 6.0 * at(i);
+            taken[i * n + dof] = second / 12.0 - fourth / 90.0;
+        }
+    }
+    for (force, taken) in force.iter_mut().zip(&taken) {
+        *force -= taken;
+    }
+    taken
 }
 
 /// First derivative of a sampled signal by five-point central differences,
@@ -199,7 +234,46 @@ fn derivative(signal: &[f64], step: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::derivative;
+    use std::f64::consts::TAU;
+
+    use super::{derivative, straighten};
+
+    /// Amplitude of the fundamental of straight lines through a sine of so many samples a cycle.
+    fn fundamental(per_cycle: f64, straightened: bool) -> f64 {
+        let angle = TAU / per_cycle;
+        let mut force: Vec<f64> = (0..200).map(|i| (angle * f64::from(i)).cos()).collect();
+        if straightened {
+            straighten(&mut force, 1);
+        }
+        let half = 0.5 * angle;
+        force[100] / (angle * 100.0).cos() * (half.sin() / half).powi(2)
+    }
+
+    #[test]
+    fn verify_straight_lines_push_as_the_curve_does() {
+        assert!((fundamental(10.0, false) - 0.9675).abs() < 1e-3);
+        assert!((fundamental(10.0, true) - 1.0).abs() < 1.5e-4);
+        assert!((fundamental(4.0, true) - 1.0).abs() < 0.02);
+        // Sixth order: half the interval leaves a sixty-fourth.
+        let ratio = (fundamental(15.0, true) - 1.0) / (fundamental(30.0, true) - 1.0);
+        assert!((ratio / 64.0 - 1.0).abs() < 0.1, "{ratio}");
+    }
+
+    #[test]
+    fn verify_what_is_taken_away_has_neither_sum_nor_moment() {
+        let pulse = |i: u8| f64::from(u8::from((13..17).contains(&i)));
+        let mut force: Vec<f64> = (0..30).map(pulse).collect();
+        let before = force.clone();
+        let taken = straighten(&mut force, 1);
+        let sum: f64 = taken.iter().sum();
+        let moment: f64 = taken.iter().enumerate().map(|(i, t)| i as f64 * t).sum();
+        assert!(sum.abs() < 1e-14 && moment.abs() < 1e-12, "{sum} {moment}");
+        for ((now, taken), before) in force.iter().zip(&taken).zip(before) {
+            assert!((now + taken - before).abs() < 1e-15);
+        }
+        assert_eq!(straighten(&mut [1.0, 5.0, 2.0], 1), [0.0; 3]);
+        assert_eq!(straighten(&mut [], 0), [0.0; 0]);
+    }
 
     /// Ten thirds of a metre, computed in two ways.
     #[test]

@@ -194,7 +194,7 @@ impl Simulator {
         keep: impl Fn(&dyn SignalMap) -> bool,
     ) -> Result<Vec<Vec<f64>>, SimulateError> {
         let ready = Workshop::default().prepare(self, run, initial)?;
-        Ok(self.deliver(run, self.predict_raw(run, &ready), keep))
+        Ok(self.deliver(run, &ready, self.predict_raw(run, &ready), keep))
     }
 
     /// The outputs of the plant, before their maps.
@@ -221,9 +221,11 @@ impl Simulator {
     pub(crate) fn deliver(
         &self,
         run: &Run,
+        ready: &Prepared,
         mut predicted: Vec<Vec<f64>>,
         keep: impl Fn(&dyn SignalMap) -> bool,
     ) -> Vec<Vec<f64>> {
+        self.accelerate(ready, &mut predicted);
         for (output, map) in self
             .output_maps
             .iter()
@@ -241,6 +243,38 @@ impl Simulator {
         predicted
     }
 
+    /// Adds what the force at a sample accelerates beyond that of the straight lines.
+    fn accelerate(&self, ready: &Prepared, predicted: &mut [Vec<f64>]) {
+        if !self.outputs.iter().any(OutputPlan::needs_acceleration) {
+            return;
+        }
+        let n = self.model.dof_count();
+        let (rest, bases) = (vec![0.0; n], vec![0.0; ready.drive.base_count]);
+        let base = BaseMotion {
+            displacement: &bases,
+            velocity: &bases,
+            acceleration: &bases,
+        };
+        let mut acceleration = vec![0.0; n];
+        for (sample, force) in ready.drive.at_sample.chunks_exact(n.max(1)).enumerate() {
+            let at = Snapshot {
+                sample,
+                displacement: &rest,
+                velocity: &rest,
+                dof_force: force,
+                element_force: &[],
+            };
+            ready.propagator.acceleration(&at, &mut acceleration);
+            for (signal, plan) in predicted.iter_mut().zip(&self.outputs) {
+                if plan.needs_acceleration()
+                    && let Some(value) = signal.get_mut(sample)
+                {
+                    *value += plan.read(&at, &acceleration, &base);
+                }
+            }
+        }
+    }
+
     /// Motion across a location along a run: between its two nodes, or of a mass.
     ///
     /// # Errors
@@ -254,8 +288,17 @@ impl Simulator {
         let ends = ends(&self.model, at)?;
         let ready = Workshop::default().prepare(self, run, initial)?;
         let mut path = MemberPath::default();
-        let mut acceleration = vec![0.0; self.model.dof_count()];
+        let n = self.model.dof_count();
+        let (mut acceleration, mut force) = (vec![0.0; n], vec![0.0; n]);
         self.march(run, &ready, |at, base| {
+            let beyond = &ready.drive.at_sample[at.sample * n..];
+            for ((force, on_lines), beyond) in force.iter_mut().zip(at.dof_force).zip(beyond) {
+                *force = on_lines + beyond;
+            }
+            let at = &Snapshot {
+                dof_force: &force,
+                ..*at
+            };
             ready.propagator.acceleration(at, &mut acceleration);
             let across = |dofs: &[f64], bases: &[f64]| across(ends, dofs, bases);
             path.displacement

@@ -110,11 +110,12 @@ fn verify_a_base_excited_mass_moves_as_its_transmissibility_says() {
 }
 
 #[test]
-fn order_base_excitation_is_interpolated_to_second_order() {
+fn order_base_excitation_is_interpolated_to_fourth_order() {
+    // The velocity of the base is differenced to that order; the samples at the ends start a transient.
     let (coarse, fine) = (base_errors(0.9, 4e-3), base_errors(0.9, 2e-3));
     for i in [0, 1, 3] {
         let order = (coarse[i] / fine[i]).log2();
-        assert!((order - 2.0).abs() < 0.1, "output {i}: order {order:.2}");
+        assert!(order > 3.0, "output {i}: order {order:.2}");
     }
 }
 

@@ -117,7 +117,8 @@ fn verify_a_stretch_of_a_run_keeps_its_clock() {
     assert_eq!(run.slice(99..120).len, 0);
 }
 
-/// A linear model marched in two parts is the model marched at once.
+/// A linear model marched in two parts is the model marched at once, where the force is as straight between
+/// the samples as a part has to take it at its ends.
 #[test]
 fn verify_a_run_continued_from_its_state_is_the_whole_run() {
     let text = [
@@ -128,7 +129,8 @@ fn verify_a_run_continued_from_its_state_is_the_whole_run() {
     ]
     .concat();
     let model = model(&text);
-    let record = record(vec![Channel::new("u", "N", wave(8.0))]);
+    let ramp = (0..40).map(|i| 0.4 * f64::from(i)).collect();
+    let record = record(vec![Channel::new("u", "N", ramp)]);
     let run = Run::new(&model, &record).unwrap();
     let whole = predict(&model, &[], 1, &run, &[0.01, 0.3]);
     let rest = predict(

@@ -33,6 +33,8 @@ impl ForceLaw for Law {
 
 /// Periods within the range of the motion: from less than one to twenty, each a sixth more.
 const FEWEST: f64 = 0.7;
+/// Longest period over the travel: a smaller part of one is any smooth curve.
+const LONGEST: f64 = 1.5;
 const STEP: f64 = 1.17;
 const COUNT: i32 = 22;
 
@@ -87,11 +89,9 @@ impl Effect for PositionPeriodicForce {
         }))
     }
 
-    fn doubt(&self, values: &[f64], _: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
         let [low, high] = scale.displacement_range_m;
-        (values[2] > high - low).then_some(
-            "its period is longer than the travel, and part of a period is any smooth curve",
-        )
+        values[2] <= LONGEST * (high - low)
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {

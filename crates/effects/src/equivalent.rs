@@ -1,19 +1,18 @@
 //! The same thing by another name.
 
-use std::borrow::Cow;
-
-use serde::{Deserialize, Serialize};
 use simgap_model::{InputKind, Location, Model, OutputKind};
 
+use crate::{Action, Placed, same_place};
+
 /// What cannot be told from an effect on a plant, whatever the data.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Equivalent {
     /// Catalogue name.
-    pub kind: String,
+    pub kind: &'static str,
     /// Where it would act.
     pub at: Location,
     /// Why the two are the same.
-    pub because: Cow<'static, str>,
+    pub because: &'static str,
 }
 
 /// The effects of the catalogue that act on the outputs of this model exactly as `kind` at `at`.
@@ -33,7 +32,7 @@ pub struct Equivalent {
 /// special value. The initial state is unknown to the diagnosis and explains transients.
 ///
 /// ```
-/// use simgap_blind::equivalents;
+/// use simgap_effects::equivalents;
 /// use simgap_model::{Location, Model};
 /// let model = Model::from_toml(r#"
 /// schema = "simgap-model/1"
@@ -71,28 +70,46 @@ pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> 
                 continue;
             }
             found.push(Equivalent {
-                kind: other.to_string(),
+                kind: other,
                 at: place,
-                because: because.into(),
+                because,
             });
         }
     }
     if kind == "presliding_friction" {
         found.push(Equivalent {
-            kind: "hysteresis".to_string(),
+            kind: "hysteresis",
             at: at.clone(),
-            because: "Dahl's law is Bouc and Wen's with n = 1 and γ = 0".into(),
+            because: "Dahl's law is Bouc and Wen's with n = 1 and γ = 0",
         });
     }
     found
 }
 
-/// Whether two places are one, whichever way round a pair is written.
-pub(crate) fn same_place(a: &Location, b: &Location) -> bool {
-    match (a, b) {
-        (Location::Between(a), Location::Between(b)) => simgap_model::same_pair(a, b),
-        _ => a == b,
+/// As [`equivalents`] of the i-th of several effects, on the plant as the others leave it: a missing spring
+/// beside the effect holds the plant, a nonlinear force breaks every equivalence.
+#[must_use]
+pub fn equivalents_beside(effects: &[Placed], i: usize, model: &Model) -> Vec<Equivalent> {
+    let Some(placed) = effects.get(i) else {
+        return vec![];
+    };
+    let mut model = model.clone();
+    for (j, other) in effects.iter().enumerate() {
+        if j == i {
+            continue;
+        }
+        match other.action() {
+            Action::Model(change) => change(&mut model, &other.at),
+            Action::Member(_) | Action::Mode { .. } => return vec![],
+            Action::Force(_)
+                if !["constant_force", "harmonic_force"].contains(&other.effect.kind()) =>
+            {
+                return vec![];
+            }
+            _ => {}
+        }
     }
+    equivalents(placed.effect.kind(), &placed.at, &model)
 }
 
 /// Effects that do the same, and why.
