@@ -78,9 +78,10 @@ fn rows(text: &str, range: std::ops::Range<usize>) -> String {
     format!("{header}\n{}\n", kept.join("\n"))
 }
 
-/// Silverbox: learnt from multisines, judged by the noise of growing amplitude.
+/// Silverbox: learnt from multisines, judged by the noise of growing amplitude. The literature has a hardening
+/// spring, a bias of 5.4 mV on the input, and an rms error of 1.03 mV with the cubic term.
 #[test]
-fn val_silverbox_hardening_spring() {
+fn val_silverbox_hardening_spring_and_the_bias_of_its_input() {
     let (Some(model), Some(record)) =
         (data("silverbox/model.toml"), data("silverbox/snls80mv.csv"))
     else {
@@ -89,6 +90,7 @@ fn val_silverbox_hardening_spring() {
     let text = std::fs::read_to_string(record).unwrap();
     let bench = Bench::new();
     bench.write("multisine.csv", rows(&text, 40_650..46_650));
+    bench.write("another.csv", rows(&text, 60_000..66_000));
     bench.write("growing.csv", rows(&text, 100..40_575));
     let model = model.to_str().unwrap();
     let args = [
@@ -96,6 +98,8 @@ fn val_silverbox_hardening_spring() {
         model,
         "--train",
         "multisine.csv",
+        "--train",
+        "another.csv",
         "--check",
         "growing.csv",
     ];
@@ -104,6 +108,10 @@ fn val_silverbox_hardening_spring() {
     let spring = serde_json::json!({"between": ["resonator", "ground"]});
     let cubic = value(&json, "cubic_stiffness", &spring);
     assert!(cubic > 0.0, "it hardens: {cubic}");
-    let closed = json["gap"]["closed"].as_f64().unwrap();
-    assert!(closed >= 0.85, "closed {closed}");
+    let mass = serde_json::json!({"mass": "resonator"});
+    let bias_v = value(&json, "constant_force", &mass) / 192_866.94;
+    assert!((-5.8e-3..=-4.8e-3).contains(&bias_v), "bias {bias_v} V");
+    let measured = json["gap"]["corrected"].as_f64().unwrap();
+    // The growing noise has a standard deviation of 53.4 mV.
+    assert!(measured * 53.4 <= 0.6, "{} mV left", measured * 53.4);
 }

@@ -274,10 +274,12 @@ fn the_sentences_hold(reader: &mut Reader) {
         low < 7.0 && 7.0 < high && high - low < 1.0,
         "{low} to {high}"
     );
-    // Of the richer law the data see the breakaway force and not the other one.
-    let [unseen, seen] = [interval(&doubt, 0), interval(&doubt, 1)];
-    assert!(unseen[1] - unseen[0] > 10.0 && seen[1] - seen[0] < 1.0);
-    let gap = |key: &str| answer["gap"][key].as_f64().unwrap();
+    // The two levels of the richer law are almost one, and it predicts hardly better.
+    let [[sliding, _], [_, breakaway]] = [interval(&doubt, 0), interval(&doubt, 1)];
+    assert!(5.5 < sliding && breakaway < 7.5, "{sliding} to {breakaway}");
+    let of = |d: &serde_json::Value, key: &str| d["gap"][key].as_f64().unwrap();
+    assert!(of(&doubt, "corrected") > 0.95 * of(&answer, "corrected"));
+    let gap = |key: &str| of(&answer, key);
     assert!(gap("corrected") < 0.1 * gap("recalibrated"));
     assert!(gap("recalibrated") < 0.5 * gap("nominal"));
 }

@@ -60,6 +60,7 @@
 mod afar;
 mod answer;
 pub mod compare;
+mod confirm;
 mod data;
 mod diagnosis;
 mod error;
@@ -67,6 +68,7 @@ mod evidence;
 mod gap;
 mod hypothesis;
 mod locate;
+mod outcome;
 mod parity;
 mod pipeline;
 mod remainder;

@@ -1,18 +1,19 @@
 //! The path from records to an answer.
 
 use rayon::prelude::*;
-use simgap_effects::{Action, Family, Placed, catalogue};
+use simgap_effects::{Family, Placed, catalogue};
 use simgap_estimate::{Fit, Problem, Start, Weights, fit, fit_initial_states};
 use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
 use simgap_simulate::substeps_for;
 
 use crate::data::{Data, divide, excerpts};
-use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, PlaceMotion, Where};
+use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
 use crate::hypothesis::{Hypothesis, name, remove, sort};
 use crate::locate::Located;
+use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
 use crate::verdict::{Judged, add_rivals_out_of_sight, is_told_from_none, judge, prune, simplest};
@@ -386,72 +387,6 @@ const FINE_LATTICE: usize = 4096;
 
 fn worth_a_note(finding: &QualityFinding) -> bool {
     !matches!(finding.defect, Defect::Quantised { levels, .. } if levels > FINE_LATTICE)
-}
-
-/// The nominal model with its parameters changed and the effects listed.
-fn corrected_model(nominal: &Model, placed: &[Placed]) -> Model {
-    let mut model = nominal.clone();
-    for effect in placed {
-        if effect.effect.family() != Family::NominalParameter {
-            model.effects.push(effect.to_entry());
-            continue;
-        }
-        match (effect.action(), &effect.at) {
-            (Action::Model(change), at) => change(&mut model, at),
-            (_, Location::Input(channel)) => {
-                let gain = model
-                    .inputs
-                    .iter_mut()
-                    .find(|input| &input.channel == channel);
-                match gain.and_then(|input| input.gain.as_mut()) {
-                    Some(gain) => *gain *= effect.values[0],
-                    // Without a gain every record is converted by its own unit, and stays so.
-                    None => model.effects.push(effect.to_entry()),
-                }
-            }
-            _ => {}
-        }
-    }
-    model
-}
-
-fn series(
-    check: &Problem,
-    data: &Data,
-    nominal: &Prediction,
-    corrected: &Prediction,
-) -> Vec<CheckSeries> {
-    let outputs = &check.model.outputs;
-    check
-        .runs
-        .iter()
-        .enumerate()
-        .map(|(r, run)| CheckSeries {
-            record: run.name.clone(),
-            time_s: data.check_times[r].clone(),
-            channels: outputs
-                .iter()
-                .enumerate()
-                .map(|(c, output)| {
-                    let measured = run.measured[c].clone().unwrap_or_default();
-                    let predicted = |p: &Prediction| -> Vec<f64> {
-                        measured
-                            .iter()
-                            .zip(&p.discrepancy[r][c])
-                            .map(|(m, d)| m - d)
-                            .collect()
-                    };
-                    ChannelSeries {
-                        channel: output.channel.clone(),
-                        unit: data.output_units[c],
-                        nominal: predicted(nominal),
-                        corrected: predicted(corrected),
-                        measured,
-                    }
-                })
-                .collect(),
-        })
-        .collect()
 }
 
 /// Names of a set, for messages.

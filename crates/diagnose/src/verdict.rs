@@ -2,11 +2,9 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Action, Equivalent, Placed, SiteScale};
-use simgap_estimate::{
-    EstimateError, Fit, Interval, Problem, Start, Weights, fit, fit_initial_states,
-};
-use simgap_simulate::Run;
+use simgap_estimate::{EstimateError, Fit, Interval, Problem};
 
+use crate::confirm::confirmed;
 use crate::evidence::{freedom, probabilities};
 use crate::hypothesis::{Hypothesis, name, pull, remove, sort, unique};
 use crate::search::Search;
@@ -49,10 +47,6 @@ const RIVALS: usize = 8;
 const EARNS_AS_PARAMETER: f64 = 1.0;
 /// Smallest part of the gap of the model as given, rms, that an effect must close in a channel.
 const MATTERS: f64 = 0.025;
-/// Share of the training records that the confirmation learns from.
-const LEARNT: f64 = 0.7;
-/// A further effect must lower the squared discrepancy on samples it was not fitted to by this much.
-const CONFIRMED: f64 = 0.01;
 
 /// A rival of one effect of a set.
 #[derive(Clone)]
@@ -232,84 +226,6 @@ pub(crate) fn moves_in_steps(placed: &Placed) -> bool {
         Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
         _ => false,
     }
-}
-
-/// What samples that neither of two sets was fitted to say about them.
-enum Ruling {
-    Better,
-    Worse,
-    Open,
-}
-
-/// Whether the larger set predicts better what neither was fitted to: the last part of each run
-/// or, where that says nothing (a decay that is over), a whole run.
-fn confirmed(
-    search: &Search<'_>,
-    larger: &Hypothesis,
-    smaller: &Hypothesis,
-) -> Result<bool, EstimateError> {
-    let runs = &search.problem.runs;
-    let cut = |run: &Run| (run.len as f64 * LEARNT) as usize;
-    let first = runs.iter().map(|run| run.slice(0..cut(run))).collect();
-    let last = runs
-        .iter()
-        .map(|run| run.slice(cut(run)..run.len))
-        .collect();
-    match ruling(search, [larger, smaller], first, last)? {
-        Ruling::Better => return Ok(true),
-        Ruling::Worse => return Ok(false),
-        Ruling::Open => {}
-    }
-    let Some((apart, others)) = runs.split_last().filter(|(_, others)| !others.is_empty()) else {
-        return Ok(false);
-    };
-    let sets = [larger, smaller];
-    let ruling = ruling(search, sets, others.to_vec(), vec![apart.clone()])?;
-    Ok(matches!(ruling, Ruling::Better))
-}
-
-/// Which of two sets, both fitted to `learnt`, predicts `kept` better.
-fn ruling(
-    search: &Search<'_>,
-    sets: [&Hypothesis; 2],
-    learnt: Vec<Run>,
-    kept: Vec<Run>,
-) -> Result<Ruling, EstimateError> {
-    let learnt = search.problem.with_runs(learnt);
-    let kept = search.problem.with_runs(kept);
-    let left = sets
-        .into_par_iter()
-        .map(|set| held_back_variance(&learnt, &kept, &set.fit.estimate, &search.weights))
-        .collect::<Result<Vec<_>, _>>()?;
-    // One channel that profits is enough, as long as the others do not pay for it.
-    let ratios: Vec<f64> = left[0].iter().zip(&left[1]).map(|(l, s)| l / s).collect();
-    let best = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-    let geometric = ratios.iter().map(|r| r.ln()).sum::<f64>() / ratios.len().max(1) as f64;
-    Ok(if best < 1.0 - CONFIRMED && geometric < 0.0 {
-        Ruling::Better
-    } else if geometric > CONFIRMED {
-        Ruling::Worse
-    } else {
-        Ruling::Open
-    })
-}
-
-/// V_c on the kept runs after a fit to the learnt ones.
-fn held_back_variance(
-    learnt: &Problem,
-    kept: &Problem,
-    start: &Start,
-    weights: &Weights,
-) -> Result<Vec<f64>, EstimateError> {
-    let mut start = start.clone();
-    start.initial.truncate(learnt.runs.len());
-    let estimate = fit(learnt, &start, weights)?.estimate;
-    let effects: Vec<Placed> = estimate
-        .effects
-        .into_iter()
-        .chain(estimate.nominal)
-        .collect();
-    Ok(fit_initial_states(kept, &effects, weights)?.variance)
 }
 
 /// Finds the rivals of each effect of a set and weighs them. Where a rival turns out better than

@@ -157,8 +157,8 @@ impl Simulator {
 /// (ωh/2)²/s = 1 + s/3 + 8 s²/45 + ...,   f' = f − δ²f/12 + δ⁴f/90
 /// ```
 ///
-/// off by 0.01 % at ten samples a cycle, where straight lines lose 3 %. Of a pulse, the sum and the first moment of what
-/// is added are zero. The last two samples at each end stay as they are.
+/// off by 0.01 % at ten samples a cycle, where straight lines lose 3 %. Of a pulse, the sum and the first
+/// moment of what is taken away are zero. The last two samples at each end stay as they are.
 fn straighten(force: &mut [f64], n: usize) -> Vec<f64> {
     let mut taken = vec![0.0; force.len()];
     for dof in 0..n {
