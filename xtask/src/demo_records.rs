@@ -17,6 +17,8 @@ use simgap_report::chart::{ChartError, LineChart, Role, Series};
 use simgap_simulate::{Run, SimulateError, Simulator};
 use thiserror::Error;
 
+use crate::generated::workspace_root;
+
 /// Sampling as in the paper, and how much finer the truth is simulated.
 const TIME_STEP_S: f64 = 0.01;
 const OVERSAMPLING: usize = 100;
@@ -94,9 +96,7 @@ pub enum DemoError {
 /// # Errors
 /// [`DemoError`] when a record cannot be made or written.
 pub fn run(args: &DemoArgs) -> Result<Vec<PathBuf>, DemoError> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("..")
-        .join(FOLDER);
+    let folder = workspace_root().join(FOLDER);
     let mut differ = Vec::new();
     for (name, text) in files()? {
         let path = folder.join(name);
@@ -110,9 +110,7 @@ pub fn run(args: &DemoArgs) -> Result<Vec<PathBuf>, DemoError> {
         }
     }
     if !args.check {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("..")
-            .join(PICTURE);
+        let path = workspace_root().join(PICTURE);
         simgap_record::write_text_atomic(&path, &picture(&folder)?)?;
         differ.push(path);
     }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use simgap_effects::{Placed, find};
@@ -15,6 +15,7 @@ use simgap_record::{Channel, Record};
 use simgap_simulate::{Run, Simulator};
 
 use crate::demo_records::{DemoError, Noise};
+use crate::generated::workspace_root;
 
 /// Where the files are kept, from the root of the workspace.
 pub const FOLDER: &str = "fixtures/tutorial";
@@ -76,9 +77,7 @@ pub fn differences() -> Result<Vec<String>, DemoError> {
 }
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("..")
-        .join(FOLDER)
+    workspace_root().join(FOLDER)
 }
 
 fn files() -> Result<Vec<(&'static str, String)>, DemoError> {

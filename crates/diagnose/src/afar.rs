@@ -5,7 +5,7 @@
 //! many values, spread over two decades about their starting values, and fitted from the best of them.
 
 use rayon::prelude::*;
-use simgap_effects::{Effect, Family, SiteScale};
+use simgap_effects::{Effect, SiteScale};
 use simgap_estimate::{Base, Candidate, EstimateError, Score, Start, score_outright};
 
 use crate::hypothesis::{Hypothesis, add, name, sort};
@@ -75,7 +75,7 @@ impl Search<'_> {
 
 /// Whether an effect of the machine may answer to more than in proportion to its size.
 fn is_curved(effect: &dyn Effect) -> bool {
-    matches!(effect.family(), Family::Force | Family::Dynamics) && effect.clock().is_none()
+    effect.family().is_law() && effect.clock().is_none()
 }
 
 /// Whether it has, besides its size, values that shape it.

@@ -144,13 +144,10 @@ fn explains_all_it_saw(answer: &Answer) -> bool {
 
 /// Named forces and dynamics.
 fn laws(answer: &Answer) -> usize {
-    let machine = |judged: &&Judged| {
-        matches!(
-            judged.placed.effect.family(),
-            Family::Force | Family::Dynamics
-        )
-    };
-    answer.judged.iter().filter(machine).count()
+    let named = answer.judged.iter();
+    named
+        .filter(|judged| judged.placed.effect.family().is_law())
+        .count()
 }
 
 /// Whether several forces and dynamics together leave more than true ones would: a law that the

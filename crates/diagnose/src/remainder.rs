@@ -79,8 +79,7 @@ fn best_law(
     let scored = places
         .into_par_iter()
         .filter_map(|(effect, at)| {
-            let known = search.candidates.iter().find(|(known, _)| known.at == at);
-            let scale = known?.1;
+            let scale = search.scale_at(&at)?;
             let candidate = Candidate { effect, at };
             let best = score(&linear, &candidate, &scale)
                 .ok()?

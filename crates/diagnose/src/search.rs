@@ -185,10 +185,10 @@ impl<'a> Search<'a> {
         starts.par_iter().map(|start| self.fit(start)).collect()
     }
 
-    /// Typical sizes at a place.
-    pub(crate) fn scale_at(&self, at: &Location) -> SiteScale {
+    /// Typical sizes at a place of a candidate.
+    pub(crate) fn scale_at(&self, at: &Location) -> Option<SiteScale> {
         let known = self.candidates.iter().find(|(known, _)| known.at == *at);
-        known.map_or_else(|| SiteScale::plain(0.0, 0.0, 0.0), |(_, scale)| *scale)
+        known.map(|(_, scale)| *scale)
     }
 
     /// What is the same thing by another name as the i-th effect of a set, on this plant, whatever the data; of
@@ -276,8 +276,8 @@ impl<'a> Search<'a> {
     fn means_what_it_says(&self, set: &Hypothesis) -> bool {
         let mut effects = set.effects().iter();
         effects.all(|placed| {
-            let scale = self.scale_at(&placed.at);
-            placed.effect.keeps_its_meaning(&placed.values, &scale)
+            self.scale_at(&placed.at)
+                .is_none_or(|scale| placed.effect.keeps_its_meaning(&placed.values, &scale))
         })
     }
 

@@ -4,7 +4,6 @@ use simgap_effects::{Family, Parameter, Placed};
 use simgap_estimate::Interval;
 
 use crate::pipeline::Answer;
-use crate::verdict::moves_in_steps;
 
 /// A value this near to the end of its range, relative to it, is at the end.
 const AT_THE_END: f64 = 1e-3;
@@ -26,7 +25,7 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
             other.effect.kind()
         ));
     }
-    if moves_in_steps(placed) {
+    if placed.action().is_stepped() {
         // A converter, a lost sample: nothing is fitted whose values could look odd.
         return doubts;
     }
@@ -49,7 +48,7 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
         }
     }
     let ci95: Vec<[f64; 2]> = intervals.map(|interval| interval.ci95).collect();
-    let own = placed.effect.doubt(values, &ci95, &answer.judged[i].scale);
+    let own = placed.effect.doubt(&ci95);
     doubts.extend(own.map(str::to_owned));
     if let Some(law) = &answer.remainder.law
         && law.at == placed.at
@@ -63,18 +62,13 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
     doubts
 }
 
-/// Another law of the machine at the place of the i-th effect.
+/// Another effect of the machine, or a parameter of it, at the place of the i-th.
 pub(crate) fn company(answer: &Answer, i: usize) -> Option<&Placed> {
-    let is_law = |placed: &Placed| {
-        matches!(
-            placed.effect.family(),
-            Family::Force | Family::Dynamics | Family::NominalParameter
-        )
-    };
+    let of_machine = |placed: &Placed| placed.effect.family() != Family::Measurement;
     let own = &answer.judged[i].placed;
     let others = answer.judged.iter().enumerate().filter(|(j, _)| *j != i);
     let mut others = others.map(|(_, judged)| &judged.placed);
-    others.find(|other| is_law(own) && is_law(other) && other.at == own.at)
+    others.find(|other| of_machine(own) && of_machine(other) && other.at == own.at)
 }
 
 /// The ends of the range of a parameter that are neither zero nor infinite.

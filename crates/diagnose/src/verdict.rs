@@ -1,7 +1,7 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Action, Equivalent, Placed, SiteScale};
+use simgap_effects::{Equivalent, Placed};
 use simgap_estimate::{EstimateError, Fit, Interval, Problem};
 
 use crate::confirm::confirmed;
@@ -62,8 +62,6 @@ pub(crate) struct Swap {
 /// One effect of the answer with its rivals.
 pub(crate) struct Judged {
     pub(crate) placed: Placed,
-    /// Typical sizes at its place.
-    pub(crate) scale: SiteScale,
     /// What is the same thing by another name on this plant.
     pub(crate) same: Vec<Equivalent>,
     pub(crate) probability: f64,
@@ -208,7 +206,7 @@ fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
 
 /// Whether one of the parameters of an effect that have a neutral value is surely away from it.
 pub(crate) fn is_told_from_none(placed: &Placed, intervals: &[Interval]) -> bool {
-    if moves_in_steps(placed) {
+    if placed.action().is_stepped() {
         // No derivative to take an interval from.
         return true;
     }
@@ -219,13 +217,6 @@ pub(crate) fn is_told_from_none(placed: &Placed, intervals: &[Interval]) -> bool
         .filter(|(neutral, _)| neutral.is_finite())
         .peekable();
     sizes.peek().is_none() || sizes.any(|(neutral, [low, high])| neutral < low || neutral > high)
-}
-
-pub(crate) fn moves_in_steps(placed: &Placed) -> bool {
-    match placed.action() {
-        Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
-        _ => false,
-    }
 }
 
 /// Finds the rivals of each effect of a set and weighs them. Where a rival turns out better than
@@ -281,7 +272,6 @@ fn judge_once(
         let placed = &set.effects()[i];
         list.push(Judged {
             placed: placed.clone(),
-            scale: search.scale_at(&placed.at),
             same: search.same(set, i),
             probability: shares[0],
             swap_probabilities: shares[2..].to_vec(),

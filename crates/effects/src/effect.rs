@@ -18,6 +18,14 @@ pub enum Family {
     Measurement,
 }
 
+impl Family {
+    /// Whether an effect is something the model of the machine lacks, not a value that is off.
+    #[must_use]
+    pub fn is_law(self) -> bool {
+        matches!(self, Family::Force | Family::Dynamics)
+    }
+}
+
 /// What an effect is attached to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SiteKind {
@@ -224,6 +232,17 @@ pub enum Action {
     Sampling(Box<dyn SignalMap>),
 }
 
+impl Action {
+    /// Whether it moves a signal in steps, so that it has no derivative to go by.
+    #[must_use]
+    pub fn is_stepped(&self) -> bool {
+        match self {
+            Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
+            Action::Model(_) | Action::Mode { .. } | Action::Member(_) | Action::Force(_) => false,
+        }
+    }
+}
+
 /// An entry of the catalogue.
 pub trait Effect: Sync + Send {
     /// Catalogue name, such as `coulomb_friction`.
@@ -281,10 +300,10 @@ pub trait Effect: Sync + Send {
         true
     }
 
-    /// Why fitted values, with their intervals, look like those of something else that this law imitates;
-    /// `None` where nothing speaks against it.
-    fn doubt(&self, values: &[f64], ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
-        let _ = (values, ci95, scale);
+    /// Why the intervals of fitted values look like those of something else that this law imitates; `None`
+    /// where nothing speaks against it.
+    fn doubt(&self, ci95: &[[f64; 2]]) -> Option<&'static str> {
+        let _ = ci95;
         None
     }
 

@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
-use simgap_effects::{Action, Clock, Effect, Placed, SiteScale};
+use simgap_effects::{Clock, Effect, Placed, SiteScale};
 use simgap_simulate::{Job, predict_all};
 
 use crate::fit::{Merit, fit_with, state_scale};
@@ -140,10 +140,7 @@ fn way(candidate: &Candidate, shape: &[f64]) -> Way {
         .filter(|&i| !parameters[i].per_record)
         .filter(|&i| parameters[i].neutral.is_some_and(f64::is_finite))
         .collect();
-    let stepped = match candidate.effect.action(shape) {
-        Action::Input(map) | Action::Output(map) | Action::Sampling(map) => map.is_stepped(),
-        _ => false,
-    };
+    let stepped = candidate.effect.action(shape).is_stepped();
     // A limit, or a map that moves in steps, does not grow in proportion to anything.
     let grows = candidate.effect.grows_in_proportion();
     if sizes.is_empty() || stepped || !grows {

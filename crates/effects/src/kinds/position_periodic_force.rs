@@ -33,10 +33,10 @@ impl ForceLaw for Law {
 
 /// Periods within the range of the motion: from less than one to twenty, each a sixth more.
 const FEWEST: f64 = 0.7;
-/// Longest period over the travel: a smaller part of one is any smooth curve.
-const LONGEST: f64 = 1.5;
 const STEP: f64 = 1.17;
 const COUNT: i32 = 22;
+/// Longest period over the travel: a smaller part of one is any smooth curve.
+const LONGEST: f64 = 1.5;
 
 impl Effect for PositionPeriodicForce {
     fn kind(&self) -> &'static str {
