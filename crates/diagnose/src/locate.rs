@@ -263,7 +263,7 @@ fn marks(check: &Problem, run: usize) -> Marks {
     });
     let natural_hz = check
         .model
-        .matrices()
+        .tangent_matrices()
         .and_then(|matrices| undamped_modes(&matrices))
         .map(|modes| modes.natural_freq_hz)
         .unwrap_or_default();

@@ -121,6 +121,21 @@ impl Model {
         Ok(matrices)
     }
 
+    /// As [`Model::matrices`] with the tangent stiffness at rest: each pendulum, `value sin(angle)`, is a
+    /// spring of `value` to the ground.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownNode`] when a member or a pendulum names a node that does not exist.
+    pub fn tangent_matrices(&self) -> Result<StructuralMatrices, ModelError> {
+        let mut matrices = self.matrices()?;
+        for pendulum in &self.pendulums {
+            let pair = [pendulum.at.clone(), GROUND.to_string()];
+            let pair = self.resolve_pair(&pair, || item("pendulum", &pendulum.at))?;
+            add_member(&mut matrices.stiffness_matrix, pair, pendulum.value);
+        }
+        Ok(matrices)
+    }
+
     /// Displacements under constant forces, `K x = F`, m.
     ///
     /// `forces_n` holds one force for each mass; [`Model::load_vector`] gives the known loads.

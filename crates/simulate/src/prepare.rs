@@ -66,7 +66,7 @@ impl<'a> Workshop<'a> {
         run: &'a Run,
         initial: &[f64],
     ) -> Result<Prepared, SimulateError> {
-        let matrices = simulator.model.matrices()?;
+        let matrices = simulator.model.tangent_matrices()?;
         let step = run.time_step_s / simulator.substeps as f64;
         let propagator = self.propagator(&matrices, step)?;
         let drive = self.drive(simulator, run)?;

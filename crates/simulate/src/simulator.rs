@@ -38,7 +38,8 @@ pub struct MemberPath {
     pub acceleration: Vec<f64>,
 }
 
-/// Gravity on an arm, F = value sin(angle).
+/// Gravity on an arm beyond its tangent at rest, F = value (sin(angle) − angle): the tangent is in the
+/// matrices, which are propagated exactly.
 struct Gravity {
     value: f64,
 }
@@ -47,7 +48,7 @@ impl ForceLaw for Gravity {
     simgap_integrate::lanes!(value);
 
     fn force(&self, motion: MemberMotion) -> f64 {
-        self.value * motion.displacement.sin()
+        self.value * (motion.displacement.sin() - motion.displacement)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use simgap_model::{GROUND, Model, Spring, damped_modes};
+use simgap_model::{Model, damped_modes};
 
 use crate::{Run, SimulateError};
 
@@ -23,7 +23,7 @@ const MOST_SUBSTEPS: usize = 16;
 /// # Errors
 /// [`SimulateError::Model`] when the model has no modes because M is singular.
 pub fn substeps_for(model: &Model, runs: &[Run]) -> Result<usize, SimulateError> {
-    let modes = damped_modes(&with_gravity(model).matrices()?)?;
+    let modes = damped_modes(&hanging(model).tangent_matrices()?)?;
     let mut substeps = 1;
     for run in runs {
         let step = run.time_step_s;
@@ -43,15 +43,11 @@ pub fn substeps_for(model: &Model, runs: &[Run]) -> Result<usize, SimulateError>
     Ok(substeps.clamp(1, MOST_SUBSTEPS))
 }
 
-/// The model with each pendulum as the spring it is about its rest: that is its natural frequency.
-fn with_gravity(model: &Model) -> Model {
+/// The model with every pendulum hanging: an inverted one swings about its rest as fast.
+fn hanging(model: &Model) -> Model {
     let mut model = model.clone();
-    for (i, pendulum) in model.pendulums.iter().enumerate() {
-        model.springs.push(Spring {
-            name: format!("pendulum {}", i + 1),
-            between: [pendulum.at.clone(), GROUND.into()],
-            stiffness: pendulum.value.abs(),
-        });
+    for pendulum in &mut model.pendulums {
+        pendulum.value = pendulum.value.abs();
     }
     model
 }
