@@ -223,7 +223,7 @@ fn rivals(answer: &Answer, judged: &Judged) -> Vec<Rival> {
     let swaps = judged.swaps.iter();
     let mut close: Vec<&Swap> = swaps
         .filter(|swap| {
-            is_as_likely(answer, swap) || is_same_line(swap) || is_out_of_sight(judged, swap)
+            is_as_likely(answer, swap) || is_same_line(swap) || out_of_sight(swap).is_some()
         })
         .collect();
     close.sort_by(|a, b| {
@@ -267,21 +267,18 @@ fn is_same_line(swap: &Swap) -> bool {
     swap.placed.effect.clock().is_some() && swap.misfit < INDISTINGUISHABLE
 }
 
-/// Dynamics that turn into what is named where their own mode is out of sight: the data would have to
-/// contradict them, the number of their parameters says nothing.
-fn is_out_of_sight(judged: &Judged, swap: &Swap) -> bool {
-    let limits = swap.placed.effect.turns_into();
-    limits.contains(&judged.placed.effect.kind())
-        && judged.placed.at == swap.placed.at
-        && swap.misfit < INDISTINGUISHABLE
+/// What dynamics turn into where their own mode is out of sight: the data would have to contradict them, the
+/// number of their parameters says nothing.
+fn out_of_sight(swap: &Swap) -> Option<&'static str> {
+    swap.turns_into.filter(|_| swap.misfit < INDISTINGUISHABLE)
 }
 
 fn because(answer: &Answer, judged: &Judged, swap: &Swap) -> String {
     let own = judged.placed.effect.kind();
     let behind = answer.set.evidence - swap.evidence;
-    if is_out_of_sight(judged, swap) {
+    if let Some(limit) = out_of_sight(swap) {
         return format!(
-            "where its own mode is out of sight it acts as {own} does, and it fits as well"
+            "where its own mode is out of sight it acts as {limit} does, and it fits as well"
         );
     }
     if !is_as_likely(answer, swap) {

@@ -1,7 +1,7 @@
 //! How large the gap is on the check records.
 
 use simgap_effects::{Action, Placed};
-use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states};
+use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states, simulator_at};
 use simgap_model::Location;
 use simgap_signal::noise::white_noise_std;
 
@@ -13,7 +13,9 @@ const TINY: f64 = 1e-6;
 
 /// Predictions of the check runs by one model, and their nrmse.
 pub(crate) struct Prediction {
-    /// For each run and channel, measured minus predicted.
+    /// For each run and channel, what is predicted.
+    pub(crate) predicted: Vec<Vec<Vec<f64>>>,
+    /// For each run and channel, measured minus predicted; zero where the prediction says nothing.
     pub(crate) discrepancy: Vec<Vec<Vec<f64>>>,
     /// Initial state of each run.
     pub(crate) initial: Vec<Vec<f64>>,
@@ -35,7 +37,14 @@ pub(crate) fn predict(
         .zip(&std)
         .map(|(v, s)| v.sqrt() / s)
         .collect();
+    let mut with_effects = check.with_runs(vec![]);
+    with_effects.given.extend(effects.iter().cloned());
+    let runs = check.runs.iter().zip(&fit.estimate.initial).enumerate();
+    let predicted = runs
+        .map(|(r, (run, initial))| simulator_at(&with_effects, &fit, r)?.predict(run, initial))
+        .collect::<Result<_, _>>()?;
     Ok(Prediction {
+        predicted,
         discrepancy: fit.discrepancy,
         initial: fit.estimate.initial,
         nrmse,

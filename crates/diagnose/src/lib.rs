@@ -68,6 +68,7 @@ mod evidence;
 mod gap;
 mod hypothesis;
 mod locate;
+mod out_of_sight;
 mod outcome;
 mod parity;
 mod pipeline;

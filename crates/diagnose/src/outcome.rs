@@ -53,22 +53,12 @@ pub(crate) fn series(
             channels: outputs
                 .iter()
                 .enumerate()
-                .map(|(c, output)| {
-                    let measured = run.measured[c].clone().unwrap_or_default();
-                    let predicted = |p: &Prediction| -> Vec<f64> {
-                        measured
-                            .iter()
-                            .zip(&p.discrepancy[r][c])
-                            .map(|(m, d)| m - d)
-                            .collect()
-                    };
-                    ChannelSeries {
-                        channel: output.channel.clone(),
-                        unit: data.output_units[c],
-                        nominal: predicted(nominal),
-                        corrected: predicted(corrected),
-                        measured,
-                    }
+                .map(|(c, output)| ChannelSeries {
+                    channel: output.channel.clone(),
+                    unit: data.output_units[c],
+                    nominal: nominal.predicted[r][c].clone(),
+                    corrected: corrected.predicted[r][c].clone(),
+                    measured: run.measured[c].clone().unwrap_or_default(),
                 })
                 .collect(),
         })

@@ -13,10 +13,11 @@ use crate::evidence::independence;
 use crate::gap::{Prediction, gap, predict};
 use crate::hypothesis::{Hypothesis, name, remove, sort};
 use crate::locate::Located;
+use crate::out_of_sight::{add_rivals_out_of_sight, adjusted};
 use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
-use crate::verdict::{Judged, add_rivals_out_of_sight, is_told_from_none, judge, prune, simplest};
+use crate::verdict::{Judged, is_told_from_none, judge, prune, simplest};
 use crate::{DiagnoseError, answer, locate};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
@@ -317,13 +318,11 @@ fn search(
     let mut start = set.fit.estimate.clone();
     let remainder = if start.nominal.is_empty() {
         // Held exactly while the cause was sought; the answer adjusts them again.
-        start.nominal = nominal_parameters(request, train);
-        let named: Vec<String> = start.effects.iter().map(name).collect();
-        start.nominal.retain(|p| !named.contains(&name(p)));
-        let settled = search.fit(&start)?;
+        let nominal = nominal_parameters(request, train);
+        let settled = search.fit(&adjusted(&start, &nominal))?;
         start = settled.fit.estimate.clone();
         if scope == Scope::Everything {
-            add_rivals_out_of_sight(&search, &set, &settled, &mut judged)?;
+            add_rivals_out_of_sight(&search, [&set, &settled], &nominal, &mut judged)?;
         }
         remainder(&search, &settled)?
     } else {

@@ -1,12 +1,13 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Equivalent, Placed};
-use simgap_estimate::{EstimateError, Fit, Interval, Problem};
+use simgap_effects::{Equivalent, Placed, same_place};
+use simgap_estimate::{EstimateError, Fit, Interval, Problem, Start};
 
 use crate::confirm::confirmed;
 use crate::evidence::{freedom, probabilities};
 use crate::hypothesis::{Hypothesis, name, pull, remove, sort, unique};
+use crate::out_of_sight::turns_into;
 use crate::search::Search;
 
 /// Evidence an effect must bring beyond its own penalty. Calibrated on generated cases so that
@@ -46,7 +47,7 @@ const RIVALS: usize = 8;
 /// its deviation in units of the prior, halved, less the penalty for a free parameter.
 const EARNS_AS_PARAMETER: f64 = 1.0;
 /// Smallest part of the gap of the model as given, rms, that an effect must close in a channel.
-const MATTERS: f64 = 0.025;
+const MATTERS: f64 = 0.015;
 
 /// A rival of one effect of a set.
 #[derive(Clone)]
@@ -57,6 +58,11 @@ pub(crate) struct Swap {
     pub(crate) evidence: f64,
     /// How much worse the set with it fits, its number of parameters aside.
     pub(crate) misfit: f64,
+    /// That set.
+    pub(crate) estimate: Start,
+    /// The nominal parameter that it turns into where its own mode is out of sight: what is named, or fits as
+    /// well in the place of what is named.
+    pub(crate) turns_into: Option<&'static str>,
 }
 
 /// One effect of the answer with its rivals.
@@ -99,7 +105,13 @@ pub(crate) fn simplest(
     let mut smaller: Vec<&Hypothesis> = smaller
         .filter(|set| set.effects().len() < best.effects().len())
         .filter(|set| !relevant(search.problem, &best.fit, &set.fit))
-        .filter(|set| pull(&set.fit.estimate) - pull(&best.fit.estimate) < EARNS)
+        .filter(|set| {
+            if is_under_prior(&best, set) {
+                best.evidence - set.evidence <= EARNS_AS_PARAMETER
+            } else {
+                pull(&set.fit.estimate) - pull(&best.fit.estimate) < EARNS
+            }
+        })
         .collect();
     smaller.sort_by(|a, b| {
         let size = |set: &Hypothesis| set.effects().len();
@@ -197,7 +209,7 @@ fn matters(search: &Search<'_>, set: &Hypothesis, subset: &Hypothesis) -> bool {
 }
 
 /// Whether the effect that a subset lacks has a size that can be told from none.
-fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
+pub(crate) fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
     let kept = subset.key();
     let effects = set.effects().iter().zip(&set.fit.intervals);
     let mut lost = effects.filter(|(placed, _)| !kept.contains(&name(placed)));
@@ -243,93 +255,85 @@ fn judge_once(
     search: &Search<'_>,
     set: &Hypothesis,
 ) -> Result<(Vec<Judged>, Option<Hypothesis>), EstimateError> {
-    let mut better: Option<Hypothesis> = None;
-    let mut list = Vec::new();
-    for i in 0..set.effects().len() {
-        let subset = without(search, set, i)?;
-        let mut rivals = search.extend(&subset, RIVALS)?;
-        rivals.extend(search.grow(set, i)?);
-        for rival in &mut rivals {
-            discount(search, set, rival);
-            level(search, set, rival);
+    let judged = (0..set.effects().len())
+        .into_par_iter()
+        .map(|i| judge_effect(search, set, i))
+        .collect::<Result<Vec<_>, _>>()?;
+    let (list, better): (Vec<Judged>, Vec<Option<Hypothesis>>) = judged.into_iter().unzip();
+    let better = better.into_iter().flatten().reduce(|best, other| {
+        if other.evidence > best.evidence {
+            other
+        } else {
+            best
         }
-        rivals.retain(|rival| rival.key() != set.key());
-        sort(&mut rivals);
-        unique(&mut rivals);
-        let mut evidence = vec![set.evidence, subset.evidence];
-        evidence.extend(rivals.iter().map(|rival| rival.evidence));
-        // The set, the set without the effect, then the rivals.
-        let shares = probabilities(&evidence);
-        let swaps: Vec<Swap> = rivals
-            .iter()
-            .map(|rival| Swap {
-                // A rival that is the set with another start has nothing to put in its place.
-                placed: replacement(set, rival).unwrap_or(&set.effects()[i]).clone(),
-                evidence: rival.evidence,
-                misfit: rival.fit.objective - set.fit.objective,
-            })
-            .collect();
-        let placed = &set.effects()[i];
-        list.push(Judged {
-            placed: placed.clone(),
-            same: search.same(set, i),
-            probability: shares[0],
-            swap_probabilities: shares[2..].to_vec(),
-            worth: set.evidence - subset.evidence,
-            relevance: fall(&subset.fit, &set.fit),
-            swaps,
-        });
-        // A simpler rival that is about as likely is the better name; one as rich must lead.
-        let handicap = |rival: &Hypothesis| {
-            if freedom(&rival.fit) < freedom(&set.fit) {
-                -SIMPLER
-            } else {
-                TIE
-            }
-        };
-        let mut found = rivals
-            .into_iter()
-            .filter(|rival| rival.evidence > set.evidence + handicap(rival));
-        if let Some(best) = found.next()
-            && better
-                .as_ref()
-                .is_none_or(|known| best.evidence > known.evidence)
-        {
-            better = Some(best);
-        }
-    }
+    });
     Ok((list, better))
 }
 
-/// Adds to named nominal parameters the dynamics that turn into them where their own mode is out of
-/// sight. `settled` is the named set with all other nominal parameters under their prior, as the dynamics
-/// leave them; `set` is the set as it was judged, with the others held.
-pub(crate) fn add_rivals_out_of_sight(
+/// Rivals of one effect, and the best of them where it beats the set.
+fn judge_effect(
     search: &Search<'_>,
     set: &Hypothesis,
-    settled: &Hypothesis,
-    judged: &mut [Judged],
-) -> Result<(), EstimateError> {
-    for (i, judged) in judged.iter_mut().enumerate() {
-        let mut rivals = search.grow(settled, i)?;
-        rivals.retain(|rival| identified(rival, settled));
-        let mut evidence = vec![settled.evidence];
-        evidence.extend(rivals.iter().map(|rival| rival.evidence));
-        let shares = probabilities(&evidence);
-        for (rival, share) in rivals.iter().zip(&shares[1..]) {
-            let Some(placed) = replacement(settled, rival) else {
-                continue;
-            };
-            judged.swap_probabilities.push(judged.probability * share);
-            judged.swaps.push(Swap {
-                placed: placed.clone(),
-                evidence: set.evidence + rival.evidence - settled.evidence,
-                misfit: rival.fit.objective - settled.fit.objective,
-            });
-        }
-        judged.probability *= shares[0];
+    i: usize,
+) -> Result<(Judged, Option<Hypothesis>), EstimateError> {
+    let own = &set.effects()[i];
+    let subset = without(search, set, i)?;
+    let mut rivals = search.extend(&subset, RIVALS)?;
+    rivals.extend(search.grow(set, i)?);
+    for rival in &mut rivals {
+        discount(search, set, rival);
+        level(search, set, rival);
     }
-    Ok(())
+    rivals.retain(|rival| rival.key() != set.key());
+    sort(&mut rivals);
+    unique(&mut rivals);
+    let mut evidence = vec![set.evidence, subset.evidence];
+    evidence.extend(rivals.iter().map(|rival| rival.evidence));
+    // The set, the set without the effect, then the rivals.
+    let shares = probabilities(&evidence);
+    let swaps: Vec<Swap> = rivals
+        .iter()
+        .map(|rival| {
+            // A rival that is the set with another start has nothing to put in its place.
+            let placed = replacement(set, rival).unwrap_or(own);
+            Swap {
+                placed: placed.clone(),
+                evidence: rival.evidence,
+                misfit: rival.fit.objective - set.fit.objective,
+                estimate: rival.fit.estimate.clone(),
+                turns_into: turns_into(placed, own),
+            }
+        })
+        .collect();
+    let same = search.same(set, i);
+    // The same thing by another name is as likely, whether it was fitted or not.
+    let is_fitted = |other: &&Equivalent| {
+        let mut fitted = swaps.iter().map(|swap| &swap.placed);
+        fitted.any(|one| one.effect.kind() == other.kind && same_place(&one.at, &other.at))
+    };
+    let not_fitted = same.len() - same.iter().filter(is_fitted).count();
+    let all = 1.0 + not_fitted as f64 * shares[0];
+    let judged = Judged {
+        placed: own.clone(),
+        same,
+        probability: shares[0] / all,
+        swap_probabilities: shares[2..].iter().map(|share| share / all).collect(),
+        worth: set.evidence - subset.evidence,
+        relevance: fall(&subset.fit, &set.fit),
+        swaps,
+    };
+    // A simpler rival that is about as likely is the better name; one as rich must lead.
+    let handicap = |rival: &Hypothesis| {
+        if freedom(&rival.fit) < freedom(&set.fit) {
+            -SIMPLER
+        } else {
+            TIE
+        }
+    };
+    let mut better = rivals
+        .into_iter()
+        .filter(|rival| rival.evidence > set.evidence + handicap(rival));
+    Ok((judged, better.next()))
 }
 
 /// A rival that contains an effect of the set and moves no output by more than the simulation may
@@ -361,7 +365,7 @@ fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
 }
 
 /// The effect of a rival set that the set lacks.
-fn replacement<'a>(set: &Hypothesis, rival: &'a Hypothesis) -> Option<&'a Placed> {
+pub(crate) fn replacement<'a>(set: &Hypothesis, rival: &'a Hypothesis) -> Option<&'a Placed> {
     let key = set.key();
     rival
         .effects()

@@ -1,5 +1,11 @@
 //! Maps of sampled signals: what a sensor, a cable or a clock does to a channel.
 
+use std::ops::Range;
+
+/// Share of a record at either end that a map may leave out as beyond its reach: leaving out n samples
+/// moves a log-likelihood by about √(n/2) at random.
+const MOST_BEYOND: f64 = 0.01;
+
 /// A uniformly sampled signal.
 #[derive(Debug, Clone, Copy)]
 pub struct Sampled<'a> {
@@ -36,6 +42,12 @@ pub trait SignalMap: Send + Sync {
     /// The delivered signal, as long as the true one.
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64>;
 
+    /// The samples that are made of the signal alone, not of what was before or comes after the record; at
+    /// either end no more than a hundredth of the record is left out. `values` of the signal may be any.
+    fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
+        0..signal.values.len()
+    }
+
     /// Whether the map moves in steps (rounding), so that it has no derivative to go by.
     fn is_stepped(&self) -> bool {
         false
@@ -43,6 +55,16 @@ pub trait SignalMap: Send + Sync {
 }
 
 impl Sampled<'_> {
+    /// The samples whose positions are on the record, see [`SignalMap::reach`].
+    pub(crate) fn on_record(&self, position: impl Fn(usize) -> f64) -> Range<usize> {
+        let len = self.values.len();
+        let most = (MOST_BEYOND * len as f64) as usize;
+        let is_off = |i: &usize| !(0.0..=(len as f64 - 1.0)).contains(&position(*i));
+        let start = (0..most).rev().find(is_off).map_or(0, |i| i + 1);
+        let end = (len - most..len).find(is_off).unwrap_or(len);
+        start..end
+    }
+
     /// Value at a fractional sample position, by Lagrange interpolation through the six nearest
     /// samples.
     ///

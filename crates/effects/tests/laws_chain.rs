@@ -81,34 +81,52 @@ fn verify_sensor_lag_starts_in_the_steady_state() {
     let level = [4.2; 30];
     let found = through(map("sensor_lag", &[0.5]).as_ref(), &level, 0.01);
     assert_eq!(found, level);
-    // A step between two samples is a ramp of one sample; long after it the lag has settled.
+    // A jump is no polynomial: it shows two samples early, and has settled long after.
     let mut step = [0.0; 4000];
     step[10..].fill(1.0);
-    let found = through(map("sensor_lag", &[0.5]).as_ref(), &step, 0.01);
-    assert_eq!(found[9], 0.0);
     let tau = 0.5_f64;
-    let at_step = 1.0 + tau / 0.01 * (-0.01 / tau).exp_m1();
-    for (i, z) in found.iter().enumerate().skip(10) {
-        let needed = 1.0 - (1.0 - at_step) * (-0.01 * (i - 10) as f64 / tau).exp();
-        assert_near(*z, needed, 1e3 * ROUNDING);
+    let found = through(map("sensor_lag", &[tau]).as_ref(), &step, 0.01);
+    assert_eq!(found[..8], [0.0; 8]);
+    assert!(found[8..10].iter().all(|z| z.abs() < 0.1 * 0.01 / tau));
+    for pair in found[13..].windows(2) {
+        assert_near(
+            1.0 - pair[1],
+            (1.0 - pair[0]) * (-0.01 / tau).exp(),
+            1e3 * ROUNDING,
+        );
     }
+    assert_near(found[3999], 1.0, 1e3 * ROUNDING);
 }
 
-/// A sine of whole periods after the transient: gain 1/√(1 + (ωτ)²), phase −atan ωτ, and the
-/// linear interpolation lowers the amplitude by (ωΔt)²/12.
+/// sin ωt after the transient: gain 1/√(1 + (ωτ)²), phase −atan ωτ, off by no more than the polynomials are.
 #[test]
 fn verify_sensor_lag_of_a_sine() {
-    let (step_s, freq_hz, tau) = (0.001, 5.0, 0.02);
+    let (step_s, freq_hz, tau) = (0.01_f64, 5.0, 0.02);
     let omega = 2.0 * PI * freq_hz;
     let sine: Vec<f64> = (0..2000)
         .map(|i| (omega * step_s * f64::from(i)).sin())
         .collect();
-    let found = through(map("sensor_lag", &[tau]).as_ref(), &sine, step_s);
-    let (gain, phase) = (1.0 / (omega * tau).hypot(1.0), -(omega * tau).atan());
-    let interpolated = (omega * step_s).powi(2) / 12.0;
-    for (i, z) in found.iter().enumerate().skip(1000) {
-        let needed = gain * (omega * step_s * i as f64 + phase).sin();
-        assert_near(*z, needed, 1.01 * gain * interpolated);
+    let delivered = |i: usize| {
+        let phase = -(omega * tau).atan();
+        (omega * step_s * i as f64 + phase).sin() / (omega * tau).hypot(1.0)
+    };
+    let bound = 5.0 / 1024.0 * (omega * step_s).powi(6);
+    let lag = map("sensor_lag", &[tau]);
+    let found = through(lag.as_ref(), &sine, step_s);
+    for (i, z) in found.iter().enumerate().take(1990).skip(200) {
+        assert_near(*z, delivered(i), bound);
+    }
+    // A record that begins mid-motion: what the filter held before is taken from it.
+    assert!((found[1] - delivered(1)).abs() > 0.1);
+    let measured: Vec<f64> = (0..2000).map(delivered).collect();
+    let found = lag.apply(Sampled {
+        measured: Some(&measured),
+        ..Sampled::from_start(&sine, step_s)
+    });
+    // The first two intervals are taken as linear.
+    let linear = (omega * step_s).powi(2) / 8.0;
+    for (i, z) in found.iter().enumerate() {
+        assert_near(*z, measured[i], linear);
     }
 }
 

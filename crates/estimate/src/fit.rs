@@ -8,7 +8,8 @@
 //! ```
 //!
 //! (1) is the likelihood with the noise variance of each channel concentrated out, ρ_c the share
-//! of independent samples; (4) its Gauss-Newton step, damped after Levenberg and Marquardt.
+//! of independent samples; the sum of (2) is over the samples that the effects say anything about
+//! (`reach`); (4) its Gauss-Newton step, damped after Levenberg and Marquardt.
 //! Entries at a physical bound that the step would push further out are held there.
 //!
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
@@ -17,8 +18,11 @@ use simgap_simulate::LANES;
 
 use crate::information::information;
 use crate::layout::{Freedom, Layout};
-use crate::linearise::{Linearised, Signals, discrepancies, discrepancies_of, linearise, refresh};
+use crate::linearise::{
+    Linearised, Signals, discrepancies, discrepancies_of, linearise, reach, refresh,
+};
 use crate::normal::{damped_step, normal_equations, variances};
+use crate::reach::Reach;
 use crate::{EstimateError, Problem, Start, Weights};
 
 /// A parameter value with its 95 % interval.
@@ -156,7 +160,7 @@ struct Next {
 struct Line<'a> {
     problem: &'a Problem,
     layout: &'a Layout,
-    merit: &'a Merit,
+    merit: &'a Merit<'a>,
 }
 
 impl Line<'_> {
@@ -227,7 +231,13 @@ impl Line<'_> {
     }
 }
 
-fn finish(layout: &Layout, merit: &Merit, theta: &[f64], at: Linearised, iterations: usize) -> Fit {
+fn finish(
+    layout: &Layout,
+    merit: &Merit<'_>,
+    theta: &[f64],
+    at: Linearised,
+    iterations: usize,
+) -> Fit {
     let (objective, variance) = merit.of(layout, theta, &at.discrepancy);
     let (hessian, _) = normal_equations(layout, theta, &at, &merit.weights(&variance));
     let all: Vec<usize> = (0..layout.len()).collect();
@@ -269,16 +279,18 @@ fn finish(layout: &Layout, merit: &Merit, theta: &[f64], at: Linearised, iterati
 }
 
 /// The objective (1) and the weights (3).
-pub(crate) struct Merit {
+pub(crate) struct Merit<'a> {
+    problem: &'a Problem,
     independence: Vec<f64>,
     floor: Vec<f64>,
     count: f64,
 }
 
-impl Merit {
-    pub(crate) fn new(problem: &Problem, weights: &Weights) -> Merit {
+impl<'a> Merit<'a> {
+    pub(crate) fn new(problem: &'a Problem, weights: &Weights) -> Merit<'a> {
         let std = problem.output_std();
         Merit {
+            problem,
             independence: weights.independence.clone(),
             floor: std
                 .iter()
@@ -293,11 +305,12 @@ impl Merit {
         0.5 * self.independence.iter().sum::<f64>() * self.count * factor.ln()
     }
 
-    pub(crate) fn variance(&self, discrepancy: &[Signals]) -> Vec<f64> {
+    /// V_c, over the samples within reach.
+    pub(crate) fn variance(&self, discrepancy: &[Signals], reach: &Reach) -> Vec<f64> {
         (0..self.floor.len())
             .map(|c| {
                 let square = |run: &Signals| run[c].iter().map(|r| r * r).sum::<f64>();
-                discrepancy.iter().map(square).sum::<f64>() / self.count
+                discrepancy.iter().map(square).sum::<f64>() / reach.count(c).max(1.0)
             })
             .collect()
     }
@@ -309,7 +322,8 @@ impl Merit {
         theta: &[f64],
         discrepancy: &[Signals],
     ) -> (f64, Vec<f64>) {
-        let variance = self.variance(discrepancy);
+        let reach = reach(self.problem, layout, theta);
+        let variance = self.variance(discrepancy, &reach);
         let fit: f64 = variance
             .iter()
             .zip(&self.floor)

@@ -72,6 +72,7 @@ mod linearise;
 mod normal;
 mod outright;
 mod problem;
+mod reach;
 mod score;
 mod site;
 

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use simgap_simulate::{Job, LANES, Simulator, predict_all};
 
 use crate::layout::Layout;
+use crate::reach::Reach;
 use crate::{EstimateError, Problem};
 
 /// Relative size of a finite-difference step: the square root of the accuracy of a simulation
@@ -103,8 +104,22 @@ pub(crate) fn discrepancies_of(
     let mut signals = simulate(problem, &points).into_iter();
     thetas
         .iter()
-        .map(|_| signals.by_ref().take(runs).collect())
+        .map(|theta| {
+            let reach = reach(problem, layout, theta);
+            let of_theta = signals.by_ref().take(runs).enumerate();
+            let within = of_theta.map(|(run, signals)| {
+                let mut signals = signals?;
+                reach.keep(run, &mut signals);
+                Ok(signals)
+            });
+            within.collect()
+        })
         .collect()
+}
+
+/// The samples that the effects of a packed vector say anything about.
+pub(crate) fn reach(problem: &Problem, layout: &Layout, theta: &[f64]) -> Reach {
+    Reach::of(problem, &layout.unpack(theta).effects)
 }
 
 fn subtract(measured: &[Option<Vec<f64>>], mut predicted: Signals) -> Signals {
@@ -194,6 +209,7 @@ pub(crate) fn refresh(
     .into_iter();
     let mut changes = simulate(problem, &points).into_iter();
     let mut all = Vec::with_capacity(columns.len());
+    let reach = reach(problem, layout, theta);
     for (run, list) in columns.into_iter().enumerate() {
         let smooth = if stepped[run] {
             smooth.next().transpose()?
@@ -208,7 +224,9 @@ pub(crate) fn refresh(
                 None => {
                     let moved = changes.next().unwrap_or_else(|| Ok(vec![]))?;
                     let factor = layout.scale[entry] / difference(layout, theta, entry);
-                    derivative(moved, own, factor)
+                    let mut column = derivative(moved, own, factor);
+                    reach.keep(run, &mut column);
+                    column
                 }
             });
         }

@@ -21,6 +21,7 @@ use crate::fit::{Merit, fit_with, state_scale};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, Signals, linearise};
 use crate::normal::{inner, normal_equations};
+use crate::reach::Reach;
 use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
@@ -36,6 +37,7 @@ pub struct Base<'a> {
     pub(crate) fit: &'a Fit,
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
+    reach: Reach,
     pub(crate) weights: Vec<f64>,
     pub(crate) hessian: Mat<f64>,
     pub(crate) gradient: Vec<f64>,
@@ -72,20 +74,19 @@ pub fn linearise_at<'a>(
     let theta = layout.pack(&fit.estimate);
     let at = linearise(problem, &layout, &theta)?;
     let merit = Merit::new(problem, weights);
-    let channel_weights = merit.weights(&merit.variance(&at.discrepancy));
+    let reach = Reach::of(problem, &fit.estimate.effects);
+    let channel_weights = merit.weights(&merit.variance(&at.discrepancy, &reach));
     let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
     let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
-    let energy = at
-        .discrepancy
-        .iter()
-        .map(|run| inner(run, run, &channel_weights))
-        .sum();
+    let squared = |run: &Signals| inner(run, run, &channel_weights);
+    let energy = at.discrepancy.iter().map(squared).sum();
     Ok(Base {
         energy,
         problem,
         fit,
         layout,
         at,
+        reach,
         weights: channel_weights,
         hessian,
         gradient,
@@ -382,6 +383,7 @@ impl Base<'_> {
                 None => signal.fill(0.0),
             }
         }
+        self.reach.keep(run, &mut predicted);
         predicted
     }
 

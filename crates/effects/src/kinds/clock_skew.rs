@@ -1,5 +1,7 @@
 //! The clock of a channel runs fast or slow.
 
+use std::ops::Range;
+
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
 
@@ -21,13 +23,22 @@ const WORST: f64 = 0.05;
 
 struct Skew(f64);
 
+impl Skew {
+    fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
+        // A slice of a record begins with the shift that has come together by then.
+        i as f64 + self.0 * (signal.first_index + i) as f64
+    }
+}
+
 impl SignalMap for Skew {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
-        // A slice of a record begins with the shift that has come together by then.
-        let shift = |i: usize| self.0 * (signal.first_index + i) as f64;
         (0..signal.values.len())
-            .map(|i| signal.at(i as f64 + shift(i)))
+            .map(|i| signal.at(self.position(&signal, i)))
             .collect()
+    }
+
+    fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
+        signal.on_record(|i| self.position(&signal, i))
     }
 }
 

@@ -187,6 +187,15 @@ impl Effect for Hysteresis {
         }))
     }
 
+    fn doubt(&self, ci95: &[[f64; 2]]) -> Option<&'static str> {
+        let &[_, _, loop_share, exponent, _] = ci95 else {
+            return None;
+        };
+        let is_one = |[low, high]: [f64; 2]| low <= 1.0 && high >= 1.0;
+        (is_one(loop_share) && is_one(exponent))
+            .then_some("its loop is the simplest of its family but for the intervals: Dahl's")
+    }
+
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
         &[
             (

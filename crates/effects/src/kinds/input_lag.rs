@@ -53,6 +53,7 @@ impl Effect for InputLag {
     fn action(&self, values: &[f64]) -> Action {
         Action::Input(Box::new(Lag {
             time_constant_s: values[0],
+            is_measured: false,
         }))
     }
 

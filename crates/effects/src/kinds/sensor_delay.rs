@@ -1,5 +1,7 @@
 //! A channel arrives late.
 
+use std::ops::Range;
+
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
 
@@ -20,6 +22,11 @@ impl SignalMap for Delay {
         (0..signal.values.len())
             .map(|i| signal.at(i as f64 - shift))
             .collect()
+    }
+
+    fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
+        let shift = self.delay_s / signal.time_step_s;
+        signal.on_record(|i| i as f64 - shift)
     }
 }
 

@@ -11,53 +11,127 @@ use crate::signal_map::{Sampled, SignalMap};
 /// τ ẏ_measured + y_measured = y
 /// ```
 ///
-/// With y linear between samples, x = Δt/τ and a = e⁻ˣ, the solution at the samples is exactly
+/// With x = Δt/τ, a = e⁻ˣ and, between two samples, the polynomial of degree five through the six around
+/// them, lᵢ its basis over [0, 1], the solution at the samples is exactly
 ///
 /// ```text
-/// zₙ₊₁ = a zₙ + b₀ yₙ + b₁ yₙ₊₁,   z₀ = y₀                          (1)
-/// b₁ = 1 − (1 − a)/x,   b₀ = 1 − a − b₁                             (2)
+/// zₙ₊₁ = a zₙ + Σᵢ wᵢ yₙ₊ᵢ,   i = −2 … 3                             (1)
+/// wᵢ = ∫₀¹ x e^(−x(1−s)) lᵢ(s) ds                                   (2)
 /// ```
+///
+/// y is taken as linear in the two intervals at either end. What the filter held before the record shows in it
+/// as a transient c aⁿ. Where the channel was measured, c is that of least squares; else z₀ = y₀.
 ///
 /// Reference: \[Franklin1998\], section 4.3.
 pub(crate) struct SensorLag;
 
-/// Below this x, (2) is summed as a series: the difference would lose digits.
-const SMALL: f64 = 1e-2;
+/// Samples of the polynomial.
+const POINTS: usize = 6;
+/// Those before the interval.
+const BEFORE: usize = 2;
+/// Below this x, moments are summed as a series: the recursion would lose digits.
+const SMALL: f64 = 1.0;
+/// Terms of that series: the next one is below 1e-16.
+const TERMS: usize = 18;
+/// The transient is over where less than this of it is left.
+const OVER: f64 = 1e-3;
+/// Of a lag longer than this share of the record the transient is no part that could be told from the rest.
+const LONGEST_TRANSIENT: f64 = 0.02;
+
+/// Coefficients of the basis polynomials lᵢ(s) of the points −2 … 3, from the power 0 on, times [`COMMON`].
+const BASIS: [[f64; POINTS]; POINTS] = [
+    [0.0, 6.0, -5.0, -5.0, 5.0, -1.0],
+    [0.0, -12.0, 16.0, -1.0, -4.0, 1.0],
+    [12.0, -4.0, -15.0, 5.0, 3.0, -1.0],
+    [0.0, 12.0, 8.0, -7.0, -2.0, 1.0],
+    [0.0, -6.0, -1.0, 7.0, 1.0, -1.0],
+    [0.0, 4.0, 0.0, -5.0, 0.0, 1.0],
+];
+const COMMON: [f64; POINTS] = [120.0, 24.0, 12.0, 12.0, 24.0, 120.0];
 
 pub(super) struct Lag {
     pub(super) time_constant_s: f64,
+    /// Whether what is delivered is what the record holds, so that its start can be told.
+    pub(super) is_measured: bool,
 }
 
-/// b₁ of (2).
-fn end_weight(x: f64) -> f64 {
+/// ∫₀¹ x e^(−x(1−s)) sᵏ ds for k = 0 … 5.
+fn moments(x: f64) -> [f64; POINTS] {
+    let mut moments = [0.0; POINTS];
     if x < SMALL {
-        // 1 − (1 − e⁻ˣ)/x = x/2 − x²/6 + x³/24 − …; the next term is below 1e-13 of the first.
-        x * (1.0 / 2.0 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x / 720.0))))
+        for (k, moment) in moments.iter_mut().enumerate() {
+            // x Σⱼ (−x)ʲ k!/(k + j + 1)!
+            let mut term = x / (k as f64 + 1.0);
+            for j in 0..TERMS {
+                *moment += term;
+                term *= -x / (k + j + 2) as f64;
+            }
+        }
     } else {
-        1.0 + (-x).exp_m1() / x
+        moments[0] = -(-x).exp_m1();
+        for k in 1..POINTS {
+            moments[k] = 1.0 - k as f64 / x * moments[k - 1];
+        }
     }
+    moments
+}
+
+/// (1) from z₀ = y₀.
+fn filtered(values: &[f64], x: f64) -> Vec<f64> {
+    let moments = moments(x);
+    let weights: [f64; POINTS] = std::array::from_fn(|i| {
+        let terms = BASIS[i].iter().zip(&moments);
+        let sum: f64 = terms
+            .map(|(coefficient, moment)| coefficient * moment)
+            .sum();
+        sum / COMMON[i]
+    });
+    // Linear: l₀ = 1 − s, l₁ = s.
+    let line = [moments[0] - moments[1], moments[1]];
+    let mut delivered = values.first().copied().unwrap_or(0.0);
+    let mut signal = vec![delivered];
+    for n in 1..values.len() {
+        // (1), as a change: at rest nothing is left to rounding.
+        let change = |points: &[f64], weights: &[f64]| -> f64 {
+            let terms = points.iter().zip(weights);
+            terms
+                .map(|(value, weight)| weight * (value - delivered))
+                .sum()
+        };
+        let first = (n - 1).checked_sub(BEFORE);
+        let around = first.and_then(|first| values.get(first..first + POINTS));
+        delivered += match around {
+            Some(points) => change(points, &weights),
+            None => change(&values[n - 1..=n], &line),
+        };
+        signal.push(delivered);
+    }
+    signal
 }
 
 impl SignalMap for Lag {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
         let x = signal.time_step_s / self.time_constant_s;
-        let Some(&first) = signal.values.first().filter(|_| x.is_finite()) else {
+        if signal.values.is_empty() || !x.is_finite() {
             return signal.values.to_vec();
+        }
+        let mut delivered = filtered(signal.values, x);
+        let long = x * LONGEST_TRANSIENT * (delivered.len() as f64) < 1.0;
+        let Some(measured) = signal.measured.filter(|_| self.is_measured && !long) else {
+            return delivered;
         };
-        let rise = -(-x).exp_m1(); // 1 − a
-        let end = end_weight(x);
-        let start = rise - end;
-        let (mut before, mut delivered) = (first, first);
-        signal
-            .values
-            .iter()
-            .map(|&value| {
-                // (1), as a change: at rest nothing is left to rounding.
-                delivered += start * (before - delivered) + end * (value - delivered);
-                before = value;
-                delivered
-            })
-            .collect()
+        let count = (-OVER.ln() / x).ceil() as usize;
+        let decay = |n: usize| (-x * n as f64).exp();
+        let (mut along, mut square) = (0.0, 0.0);
+        for (n, (measured, value)) in measured.iter().zip(&delivered).take(count).enumerate() {
+            along += decay(n) * (measured - value);
+            square += decay(n) * decay(n);
+        }
+        let transient = along / f64::max(square, 1.0);
+        for (n, value) in delivered.iter_mut().take(count).enumerate() {
+            *value += transient * decay(n);
+        }
+        delivered
     }
 }
 
@@ -105,6 +179,7 @@ impl Effect for SensorLag {
     fn action(&self, values: &[f64]) -> Action {
         Action::Output(Box::new(Lag {
             time_constant_s: values[0],
+            is_measured: true,
         }))
     }
 

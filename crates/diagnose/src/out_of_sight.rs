@@ -1,0 +1,77 @@
+//! Dynamics whose own mode no record shows, beside the nominal parameters that they turn into.
+//!
+//! A support that gives way is a softer spring below its own mode, an attached mass a heavier one. Where the
+//! answer names parameters, the data may not contradict such dynamics either.
+
+use simgap_effects::{Family, Placed};
+use simgap_estimate::{EstimateError, Start};
+
+use crate::evidence::probabilities;
+use crate::hypothesis::{Hypothesis, name, sort, unique};
+use crate::search::Search;
+use crate::verdict::{INDISTINGUISHABLE, Judged, Swap, identified, replacement};
+
+/// The kind of an effect that dynamics at its place turn into where their own mode is out of sight.
+pub(crate) fn turns_into(dynamics: &Placed, limit: &Placed) -> Option<&'static str> {
+    let kind = limit.effect.kind();
+    let turns = dynamics.at == limit.at && dynamics.effect.turns_into().contains(&kind);
+    turns.then_some(kind)
+}
+
+/// A start in which every nominal parameter that it does not name is adjusted under its prior.
+pub(crate) fn adjusted(start: &Start, nominal: &[Placed]) -> Start {
+    let named: Vec<String> = start.effects.iter().map(name).collect();
+    let others = nominal.iter().filter(|p| !named.contains(&name(p)));
+    Start {
+        nominal: others.cloned().collect(),
+        ..start.clone()
+    }
+}
+
+/// Adds to named nominal parameters the dynamics that turn into them, or into parameters that fit as well in
+/// their place. `set` is the named set as it was judged, with all other parameters held; `settled` the same
+/// with the others, `nominal`, under their prior, as the dynamics leave them.
+pub(crate) fn add_rivals_out_of_sight(
+    search: &Search<'_>,
+    [set, settled]: [&Hypothesis; 2],
+    nominal: &[Placed],
+    judged: &mut [Judged],
+) -> Result<(), EstimateError> {
+    for (i, judged) in judged.iter_mut().enumerate() {
+        let mut limits = vec![judged.placed.clone()];
+        let mut rivals = search.grow(settled, i)?;
+        let equals = judged.swaps.iter().filter(|swap| {
+            swap.placed.effect.family() == Family::NominalParameter
+                && swap.misfit < INDISTINGUISHABLE
+        });
+        for swap in equals {
+            let instead = search.fit(&adjusted(&swap.estimate, nominal))?;
+            let mut effects = instead.effects().iter();
+            if let Some(place) = effects.position(|placed| name(placed) == name(&swap.placed)) {
+                rivals.extend(search.grow(&instead, place)?);
+                limits.push(swap.placed.clone());
+            }
+        }
+        sort(&mut rivals);
+        unique(&mut rivals);
+        rivals.retain(|rival| identified(rival, settled));
+        let mut evidence = vec![settled.evidence];
+        evidence.extend(rivals.iter().map(|rival| rival.evidence));
+        let shares = probabilities(&evidence);
+        for (rival, share) in rivals.iter().zip(&shares[1..]) {
+            let Some(placed) = replacement(settled, rival) else {
+                continue;
+            };
+            judged.swap_probabilities.push(judged.probability * share);
+            judged.swaps.push(Swap {
+                placed: placed.clone(),
+                evidence: set.evidence + rival.evidence - settled.evidence,
+                misfit: rival.fit.objective - settled.fit.objective,
+                turns_into: limits.iter().find_map(|limit| turns_into(placed, limit)),
+                estimate: rival.fit.estimate.clone(),
+            });
+        }
+        judged.probability *= shares[0];
+    }
+    Ok(())
+}

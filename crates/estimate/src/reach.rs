@@ -1,0 +1,126 @@
+//! Which samples a hypothesis says anything about.
+//!
+//! A channel that comes late or early shows, at an end of the record, motion from outside of it, which no
+//! simulation of the record holds. There a hypothesis neither gains nor loses: its discrepancy counts as
+//! none, and its mean square is over the other samples.
+
+use std::ops::Range;
+
+use simgap_effects::{Action, Placed, Sampled};
+use simgap_model::Location;
+
+use crate::Problem;
+use crate::linearise::Signals;
+
+/// The samples within reach, by run and channel.
+pub(crate) struct Reach(Vec<Vec<Range<usize>>>);
+
+impl Reach {
+    /// With effects on top of those of the nominal model.
+    pub(crate) fn of(problem: &Problem, effects: &[Placed]) -> Reach {
+        let runs = 0..problem.runs.len();
+        Reach(runs.map(|run| of_run(problem, effects, run)).collect())
+    }
+
+    /// Sets what is out of reach to zero.
+    pub(crate) fn keep(&self, run: usize, signals: &mut Signals) {
+        for (signal, range) in signals.iter_mut().zip(&self.0[run]) {
+            let end = range.end.min(signal.len());
+            signal[end..].fill(0.0);
+            signal[..range.start.min(end)].fill(0.0);
+        }
+    }
+
+    /// Samples of a channel within reach.
+    pub(crate) fn count(&self, channel: usize) -> f64 {
+        let lengths = self.0.iter().map(|run| run[channel].len());
+        lengths.sum::<usize>() as f64
+    }
+}
+
+fn of_run(problem: &Problem, effects: &[Placed], number: usize) -> Vec<Range<usize>> {
+    let run = &problem.runs[number];
+    let outputs = problem.model.outputs.iter().zip(&run.measured);
+    let of_channel = |(output, measured): (&simgap_model::Output, &Option<Vec<f64>>)| {
+        let here = Location::Channel(output.channel.clone());
+        let signal = Sampled {
+            values: measured.as_deref().unwrap_or_default(),
+            time_step_s: run.time_step_s,
+            first_index: run.first_index,
+            start_s: run.start_s,
+            measured: measured.as_deref(),
+        };
+        let placed = problem.given.iter().chain(effects);
+        placed
+            .filter(|placed| placed.at == here)
+            .map(|placed| match placed.in_record(number).action() {
+                Action::Output(map) | Action::Sampling(map) => map.reach(signal),
+                _ => 0..run.len,
+            })
+            // Shifts one after the other add up.
+            .fold(0..run.len, |all, one| {
+                let late = all.start + one.start;
+                let early = all.end.saturating_sub(run.len - one.end.min(run.len));
+                late..early.max(late)
+            })
+    };
+    outputs.map(of_channel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use simgap_effects::find;
+    use simgap_model::Model;
+    use simgap_simulate::Run;
+
+    use super::*;
+
+    fn problem() -> Problem {
+        let model = Model::from_toml(
+            "schema = \"simgap-model/1\"\nname = \"m\"\n[[mass]]\nname = \"m\"\nvalue = 1.0\n\
+             [[output]]\nchannel = \"y\"\nkind = \"displacement\"\nat = \"m\"\n",
+        )
+        .unwrap();
+        let run = Run {
+            name: "a".into(),
+            start_s: 0.0,
+            time_step_s: 0.01,
+            len: 800,
+            first_index: 0,
+            inputs: vec![],
+            measured: vec![Some(vec![1.0; 800])],
+        };
+        Problem::new(&model, vec![run]).unwrap()
+    }
+
+    fn shift(kind: &str, value: f64) -> Placed {
+        let channel = Location::Channel("y".into());
+        Placed::new(find(kind).unwrap(), channel, vec![value])
+    }
+
+    #[test]
+    fn late_channels_lose_the_beginning_and_early_ones_the_end() {
+        let problem = problem();
+        let reach = |effects: &[Placed]| Reach::of(&problem, effects).0[0][0].clone();
+        assert_eq!(reach(&[]), 0..800);
+        assert_eq!(reach(&[shift("sensor_delay", 0.025)]), 3..800);
+        assert_eq!(reach(&[shift("clock_skew", -0.01)]), 0..800);
+        // Sample 795 lies at 798.98, the next one beyond the record.
+        assert_eq!(reach(&[shift("clock_skew", 0.005)]), 0..796);
+        assert_eq!(reach(&[shift("alternating_timing", 0.004)]), 0..800);
+        let both = [shift("sensor_delay", 0.025), shift("clock_skew", 0.005)];
+        assert_eq!(reach(&both), 3..796);
+        // No more than a hundredth of a record is left out.
+        assert_eq!(reach(&[shift("sensor_delay", 1.5)]), 8..800);
+    }
+
+    #[test]
+    fn what_is_out_of_reach_does_not_count() {
+        let problem = problem();
+        let reach = Reach::of(&problem, &[shift("sensor_delay", 0.025)]);
+        let mut signals = vec![vec![2.0; 800]];
+        reach.keep(0, &mut signals);
+        assert_eq!(signals[0][..4], [0.0, 0.0, 0.0, 2.0]);
+        assert_eq!(reach.count(0), 797.0);
+    }
+}
