@@ -30,7 +30,7 @@ const STAND_IN_LEAVES: f64 = 0.03;
 /// Two laws at one place that are there leave the noise of the check records, but for this factor.
 const TWO_STAND_OUT: f64 = 1.03;
 /// What leaves less than this multiple of the noise leaves nothing.
-const NOTHING_BUT_NOISE: f64 = 1.1;
+pub(crate) const NOTHING_BUT_NOISE: f64 = 1.1;
 /// How often a name is right that beats its rivals by far, and one that may be a stand-in; on
 /// generated cases.
 const TRUST: [f64; 2] = [0.97, 0.8];
@@ -127,12 +127,17 @@ fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> b
         size(&answer.estimate.variance),
         floor,
     );
-    let beyond = closed(gap.recalibrated, gap.corrected, floor);
     learnt.max(gap.closed) < CLOSES
         || (status == Status::Parameters && gap.closed < CLOSES_BEYOND_RECALIBRATION)
         || (status == Status::Effect
-            && beyond < CLOSES_BEYOND_RECALIBRATION
-            && !explains_all_it_saw(answer))
+            && leaves_much(gap)
+            && !explains_all_it_saw(answer)
+            && !answer.follows_anew)
+}
+
+/// Whether less is closed of what recalibration leaves of the check records than named effects must close.
+pub(crate) fn leaves_much(gap: &Gap) -> bool {
+    closed(gap.recalibrated, gap.corrected, gap.noise_floor) < CLOSES_BEYOND_RECALIBRATION
 }
 
 /// Whether a set with one law of the machine at the most leaves nothing but noise of the records it was

@@ -75,6 +75,7 @@ mod pipeline;
 mod remainder;
 mod search;
 mod stand_in;
+mod stretches;
 mod structure;
 mod verdict;
 

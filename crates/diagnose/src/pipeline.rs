@@ -18,7 +18,7 @@ use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
 use crate::verdict::{Judged, is_told_from_none, judge, prune, simplest};
-use crate::{DiagnoseError, answer, locate};
+use crate::{DiagnoseError, answer, locate, stretches};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
 const RECALIBRATION_PRIOR: f64 = 0.5;
@@ -76,6 +76,8 @@ pub(crate) struct Answer {
     pub(crate) singles: Vec<Hypothesis>,
     /// Without any effect, nominal parameters as given.
     pub(crate) nominal: Fit,
+    /// Whether the set leaves nothing but noise of the check records where it starts anew in every stretch.
+    pub(crate) follows_anew: bool,
 }
 
 impl Answer {
@@ -138,7 +140,17 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         gap(&check, &predictions[0], &predictions[1], corrected)
     };
     let mut gap = gap_of(&placed, &predictions);
-    if gap.corrected > HARMS * gap.recalibrated && answer.names_more_than_parameters() {
+    let anew = if answer.names_more_than_parameters() && answer::leaves_much(&gap) {
+        let known = &recalibrated.estimate.nominal;
+        Some(stretches::gap_started_anew(&check, known, &placed, &plain)?)
+    } else {
+        None
+    };
+    answer.follows_anew = anew.as_ref().is_some_and(stretches::follows);
+    if gap.corrected > HARMS * gap.recalibrated
+        && answer.names_more_than_parameters()
+        && !answer.follows_anew
+    {
         // On records it was not fitted to, the set is worse than parameters alone.
         let singles = std::mem::take(&mut answer.singles);
         answer = search(request, &train, fits, Scope::Parameters, progress)?;
@@ -174,6 +186,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         records: locate::records(&located),
     };
     let mut notes = notes(request, &data);
+    if let Some(anew) = anew.filter(|_| answer.follows_anew) {
+        notes.insert(0, stretches::told(&anew));
+    }
     if located.is_hidden {
         let hidden = "the gap hardly stands out of the noise: where it lies is where the noise is";
         notes.insert(0, hidden.into());
@@ -352,6 +367,7 @@ fn search(
         remainder,
         singles,
         nominal: nominal.clone(),
+        follows_anew: false,
     })
 }
 

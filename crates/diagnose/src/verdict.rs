@@ -1,7 +1,7 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Equivalent, Placed, same_place};
+use simgap_effects::{Equivalent, Family, Placed, same_place};
 use simgap_estimate::{EstimateError, Fit, Interval, Problem, Start};
 
 use crate::confirm::confirmed;
@@ -100,26 +100,35 @@ pub(crate) fn simplest(
     finalists: Vec<Hypothesis>,
     singles: &[Hypothesis],
 ) -> Option<Hypothesis> {
-    let best = finalists.first()?.clone();
-    let smaller = finalists.iter().chain(singles);
-    let mut smaller: Vec<&Hypothesis> = smaller
-        .filter(|set| set.effects().len() < best.effects().len())
-        .filter(|set| !relevant(search.problem, &best.fit, &set.fit))
-        .filter(|set| {
-            if is_under_prior(&best, set) {
-                best.evidence - set.evidence <= EARNS_AS_PARAMETER
-            } else {
-                pull(&set.fit.estimate) - pull(&best.fit.estimate) < EARNS
-            }
-        })
-        .collect();
-    smaller.sort_by(|a, b| {
+    let best = finalists.first()?;
+    let mut simplest = best;
+    loop {
         let size = |set: &Hypothesis| set.effects().len();
-        size(a)
-            .cmp(&size(b))
-            .then(b.evidence.total_cmp(&a.evidence))
-    });
-    Some(smaller.first().map_or(best, |&set| set.clone()))
+        let smaller = finalists.iter().chain(singles).filter(|set| {
+            let does = |larger| size(set) < size(larger) && does_as_well(search, larger, set);
+            does(best) && does(simplest)
+        });
+        let next = smaller.max_by(|a, b| {
+            let by_size = size(a).cmp(&size(b));
+            by_size.then(a.evidence.total_cmp(&b.evidence))
+        });
+        match next {
+            Some(next) => simplest = next,
+            None => return Some(simplest.clone()),
+        }
+    }
+}
+
+/// Whether a smaller set predicts as well as a larger one but for what a simulation may be off.
+fn does_as_well(search: &Search<'_>, larger: &Hypothesis, smaller: &Hypothesis) -> bool {
+    let mut effects = smaller.effects().iter();
+    let of_parameters = effects.all(|p| p.effect.family() == Family::NominalParameter);
+    let holds = if of_parameters && is_under_prior(larger, smaller) {
+        larger.evidence - smaller.evidence <= EARNS_AS_PARAMETER
+    } else {
+        pull(&smaller.fit.estimate) - pull(&larger.fit.estimate) < EARNS
+    };
+    holds && !relevant(search.problem, &larger.fit, &smaller.fit)
 }
 
 /// Relative fall of the squared discrepancy from a poorer fit to a better one, on the channel that
