@@ -135,9 +135,11 @@ fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> b
             && !answer.follows_anew)
 }
 
-/// Whether less is closed of what recalibration leaves of the check records than named effects must close.
+/// Whether what is left of the check records stands out of the noise, and less of what recalibration leaves
+/// is closed than named effects must close.
 pub(crate) fn leaves_much(gap: &Gap) -> bool {
-    closed(gap.recalibrated, gap.corrected, gap.noise_floor) < CLOSES_BEYOND_RECALIBRATION
+    gap.corrected >= STANDS_OUT * gap.noise_floor
+        && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < CLOSES_BEYOND_RECALIBRATION
 }
 
 /// Whether a set with one law of the machine at the most leaves nothing but noise of the records it was
@@ -148,7 +150,7 @@ fn explains_all_it_saw(answer: &Answer) -> bool {
 }
 
 /// Named forces and dynamics.
-fn laws(answer: &Answer) -> usize {
+pub(crate) fn laws(answer: &Answer) -> usize {
     let named = answer.judged.iter();
     named
         .filter(|judged| judged.placed.effect.family().is_law())

@@ -18,7 +18,7 @@ use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
 use crate::verdict::{Judged, is_told_from_none, judge, prune, simplest};
-use crate::{DiagnoseError, answer, locate, stretches};
+use crate::{DiagnoseError, Gap, answer, locate, stretches};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
 const RECALIBRATION_PRIOR: f64 = 0.5;
@@ -140,17 +140,17 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         gap(&check, &predictions[0], &predictions[1], corrected)
     };
     let mut gap = gap_of(&placed, &predictions);
-    let anew = if answer.names_more_than_parameters() && answer::leaves_much(&gap) {
+    let harms = |gap: &Gap| gap.corrected > HARMS * gap.recalibrated;
+    // A law that fails on the check records, or another motion of the same law?
+    let anew = if answer::laws(&answer) > 0 && (harms(&gap) || answer::leaves_much(&gap)) {
         let known = &recalibrated.estimate.nominal;
-        Some(stretches::gap_started_anew(&check, known, &placed, &plain)?)
+        stretches::gap_started_anew(&check, known, &placed, &plain).ok()
     } else {
         None
     };
-    answer.follows_anew = anew.as_ref().is_some_and(stretches::follows);
-    if gap.corrected > HARMS * gap.recalibrated
-        && answer.names_more_than_parameters()
-        && !answer.follows_anew
-    {
+    let anew = anew.filter(stretches::follows);
+    answer.follows_anew = anew.is_some();
+    if harms(&gap) && answer.names_more_than_parameters() && !answer.follows_anew {
         // On records it was not fitted to, the set is worse than parameters alone.
         let singles = std::mem::take(&mut answer.singles);
         answer = search(request, &train, fits, Scope::Parameters, progress)?;
@@ -186,7 +186,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         records: locate::records(&located),
     };
     let mut notes = notes(request, &data);
-    if let Some(anew) = anew.filter(|_| answer.follows_anew) {
+    if let Some(anew) = anew.filter(|_| !left_unknown) {
         notes.insert(0, stretches::told(&anew));
     }
     if located.is_hidden {

@@ -9,13 +9,15 @@ use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Problem, Weights};
 use simgap_simulate::Run;
 
-use crate::answer::{NOTHING_BUT_NOISE, leaves_much};
+use crate::answer::NOTHING_BUT_NOISE;
 use crate::diagnosis::Gap;
 use crate::gap::{gap, predict};
 
-/// Stretches that a check record is cut into, and samples of each at the least.
+/// Stretches that a check record is cut into at the most, and samples of each at the least.
 const MOST_STRETCHES: usize = 20;
-const SHORTEST: usize = 60;
+const SHORTEST: usize = 128;
+/// What a set leaves of the stretches, over what parameters alone leave, to have followed where they do not.
+const FOLLOWS: f64 = 0.7;
 
 /// The gap on the check records, cut into stretches of which every one has its own initial state, as given, with
 /// re-estimated parameters and corrected.
@@ -36,7 +38,8 @@ pub(crate) fn gap_started_anew(
 
 /// Whether the corrected model leaves nothing but noise of the stretches, and parameters alone more.
 pub(crate) fn follows(gap: &Gap) -> bool {
-    gap.corrected < NOTHING_BUT_NOISE * gap.noise_floor && !leaves_much(gap)
+    gap.corrected < NOTHING_BUT_NOISE * gap.noise_floor
+        && gap.corrected < FOLLOWS * gap.recalibrated
 }
 
 /// The note on a set that follows the check records for a while, and then goes its own way.
@@ -52,4 +55,60 @@ fn stretches(run: &Run) -> Vec<Run> {
     let bounds = |k: usize| k * run.len / count;
     let each = 0..count;
     each.map(|k| run.slice(bounds(k)..bounds(k + 1))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gap_of(recalibrated: f64, corrected: f64, noise_floor: f64) -> Gap {
+        Gap {
+            metric: "nrmse",
+            nominal: 0.5,
+            recalibrated,
+            corrected,
+            noise_floor,
+            closed: 0.0,
+            channels: vec![],
+        }
+    }
+
+    #[test]
+    fn a_set_follows_where_it_leaves_noise_and_parameters_alone_do_not() {
+        assert!(follows(&gap_of(0.1, 0.0105, 0.01)));
+        assert!(!follows(&gap_of(0.1, 0.02, 0.01)), "more than noise");
+        assert!(!follows(&gap_of(0.01, 0.01, 0.01)), "both leave noise");
+        assert!(!follows(&gap_of(0.009, 0.01, 0.01)), "worse");
+    }
+
+    #[test]
+    fn stretches_cover_a_run_and_are_not_short() {
+        for (len, count) in [
+            (0, 1),
+            (127, 1),
+            (255, 1),
+            (256, 2),
+            (1210, 9),
+            (90_000, 20),
+        ] {
+            let run = Run {
+                name: "a".into(),
+                start_s: 2.0,
+                time_step_s: 0.5,
+                len,
+                first_index: 7,
+                inputs: vec![vec![1.0; len]],
+                measured: vec![None],
+            };
+            let cut = stretches(&run);
+            assert_eq!(cut.len(), count, "{len}");
+            assert_eq!(cut.iter().map(|part| part.len).sum::<usize>(), len);
+            assert!(len < SHORTEST || cut.iter().all(|part| part.len >= SHORTEST));
+            let mut next = 7;
+            for part in &cut {
+                assert_eq!(part.first_index, next);
+                next += part.len;
+            }
+        }
+    }
 }

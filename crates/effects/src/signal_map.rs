@@ -5,6 +5,8 @@ use std::ops::Range;
 /// Share of a record at either end that a map may leave out as beyond its reach: leaving out n samples
 /// moves a log-likelihood by about √(n/2) at random.
 const MOST_BEYOND: f64 = 0.01;
+/// Samples that a short stretch may leave out all the same, up to a tenth of it.
+const FEW: usize = 8;
 
 /// A uniformly sampled signal.
 #[derive(Debug, Clone, Copy)]
@@ -43,9 +45,15 @@ pub trait SignalMap: Send + Sync {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64>;
 
     /// The samples that are made of the signal alone, not of what was before or comes after the record; at
-    /// either end no more than a hundredth of the record is left out. `values` of the signal may be any.
+    /// either end no more than a hundredth of the record is left out, of a short one eight samples. `values` of the signal may be any.
     fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
         0..signal.values.len()
+    }
+
+    /// Whether it is the last of the maps before sampling: it takes its start from what was measured. Lags,
+    /// gains, biases and delays may change places.
+    fn ends_the_chain(&self) -> bool {
+        false
     }
 
     /// Whether the map moves in steps (rounding), so that it has no derivative to go by.
@@ -58,7 +66,7 @@ impl Sampled<'_> {
     /// The samples whose positions are on the record, see [`SignalMap::reach`].
     pub(crate) fn on_record(&self, position: impl Fn(usize) -> f64) -> Range<usize> {
         let len = self.values.len();
-        let most = (MOST_BEYOND * len as f64) as usize;
+        let most = ((MOST_BEYOND * len as f64) as usize).max(FEW.min(len / 10));
         let is_off = |i: &usize| !(0.0..=(len as f64 - 1.0)).contains(&position(*i));
         let start = (0..most).rev().find(is_off).map_or(0, |i| i + 1);
         let end = (len - most..len).find(is_off).unwrap_or(len);

@@ -130,6 +130,32 @@ fn verify_sensor_lag_of_a_sine() {
     }
 }
 
+/// Where there is nothing to tell a transient from, none is made, and no length is too short.
+#[test]
+fn verify_sensor_lag_of_short_signals_and_of_extreme_lags() {
+    for len in 0..8 {
+        let values = vec![1.5; len];
+        let measured = vec![2.0; len];
+        for (tau, is_extreme) in [(1e-12, true), (1e-3, true), (1.0, false), (1e9, true)] {
+            let found = map("sensor_lag", &[tau]).apply(Sampled {
+                measured: Some(&measured),
+                ..Sampled::from_start(&values, 0.01)
+            });
+            assert_eq!(found.len(), len);
+            assert!(
+                found.iter().all(|z| (1.5..=2.0).contains(z)),
+                "{len} {tau}: {found:?}"
+            );
+            if is_extreme {
+                assert!(
+                    found.iter().all(|z| (z - 1.5).abs() < 1e-5),
+                    "{len} {tau}: {found:?}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn verify_clipping_of_a_sine() {
     let sine: Vec<f64> = (0..1000)

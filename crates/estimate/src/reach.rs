@@ -42,13 +42,16 @@ fn of_run(problem: &Problem, effects: &[Placed], number: usize) -> Vec<Range<usi
     let run = &problem.runs[number];
     let outputs = problem.model.outputs.iter().zip(&run.measured);
     let of_channel = |(output, measured): (&simgap_model::Output, &Option<Vec<f64>>)| {
+        let Some(measured) = measured else {
+            return 0..run.len;
+        };
         let here = Location::Channel(output.channel.clone());
         let signal = Sampled {
-            values: measured.as_deref().unwrap_or_default(),
+            values: measured,
             time_step_s: run.time_step_s,
             first_index: run.first_index,
             start_s: run.start_s,
-            measured: measured.as_deref(),
+            measured: Some(measured),
         };
         let placed = problem.given.iter().chain(effects);
         placed

@@ -102,6 +102,7 @@ impl Simulator {
                 .into_iter()
                 .map(|(at, build)| (at, build(&model, at))),
         );
+        output_maps.sort_by_key(|(_, map): &(usize, Box<dyn SignalMap>)| map.ends_the_chain());
         // What happens while sampling comes after what happens before, however they are listed.
         output_maps.extend(sampling_maps);
         let mut elements = Vec::new();

@@ -6,9 +6,10 @@ mod support;
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
+use simgap_model::Location;
 use support::{
-    base_input, force_input, force_output, largest_difference, model, oscillator, output, predict,
-    run, sampled,
+    base_input, force_input, force_output, largest_difference, model, oscillator, output, placed,
+    predict, run, sampled,
 };
 
 /// A base that moves as B sin ωt: X/B = (k + icω) / (k − mω² + icω).
@@ -361,4 +362,26 @@ proptest! {
         let run = run(0.01, 60, vec![signal[..60].to_vec(), signal[60..].to_vec()]);
         prop_assert_eq!(predict(&model, &[], 1, &run, &[]), predict(&model, &[], 7, &run, &[]));
     }
+}
+
+/// The start of a lag is taken from what was measured, which is what the whole chain delivers: it goes last,
+/// in whatever order a chain was found.
+#[test]
+fn verify_the_order_of_a_chain_with_a_lag_does_not_matter() {
+    let text = [
+        oscillator(2.0, 800.0, 3.0, "ground"),
+        output("y", "displacement", "block"),
+    ]
+    .concat();
+    let (text, channel) = (model(&text), Location::Channel("y".into()));
+    let lag = placed("sensor_lag", channel.clone(), &[0.05]);
+    let bias = placed("sensor_bias", channel, &[0.03]);
+    let mut run = run(0.01, 400, vec![]);
+    let still = predict(&text, &[bias.clone(), lag.clone()], 1, &run, &[0.01, 0.0]);
+    run.measured = vec![Some(still[0].clone())];
+    let orders = [[bias.clone(), lag.clone()], [lag, bias]];
+    let [one, other] = orders.map(|chain| predict(&text, &chain, 1, &run, &[0.01, 0.0]));
+    assert_eq!(one, other);
+    // The record begins where the filter was at rest: no transient is made up.
+    assert!(largest_difference(&one[0], &still[0]) < 1e-15);
 }

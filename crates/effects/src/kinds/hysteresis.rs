@@ -191,7 +191,8 @@ impl Effect for Hysteresis {
         let &[_, _, loop_share, exponent, _] = ci95 else {
             return None;
         };
-        let is_one = |[low, high]: [f64; 2]| low <= 1.0 && high >= 1.0;
+        // Not where the interval spans the whole range: there the data are silent.
+        let is_one = |[low, high]: [f64; 2]| low <= 1.0 && (1.0..2.0).contains(&high);
         (is_one(loop_share) && is_one(exponent))
             .then_some("its loop is the simplest of its family but for the intervals: Dahl's")
     }

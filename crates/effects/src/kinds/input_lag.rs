@@ -11,7 +11,7 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// tau du_plant/dt + u_plant = u
 /// ```
 ///
-/// Exact for an input that is linear between samples, as the lag of a sensor is.
+/// Exact for polynomials of degree five between samples, as the lag of a sensor is.
 pub(crate) struct InputLag;
 
 impl Effect for InputLag {

@@ -20,7 +20,8 @@ use crate::signal_map::{Sampled, SignalMap};
 /// ```
 ///
 /// y is taken as linear in the two intervals at either end. What the filter held before the record shows in it
-/// as a transient c aⁿ. Where the channel was measured, c is that of least squares; else z₀ = y₀.
+/// as a transient c aⁿ. Where the channel was measured, c is that of least squares, and fades for a lag of a
+/// tenth of the run or of half a sample; else it is none, z₀ = y₀.
 ///
 /// Reference: \[Franklin1998\], section 4.3.
 pub(crate) struct SensorLag;
@@ -35,8 +36,12 @@ const SMALL: f64 = 1.0;
 const TERMS: usize = 18;
 /// The transient is over where less than this of it is left.
 const OVER: f64 = 1e-3;
-/// Of a lag longer than this share of the record the transient is no part that could be told from the rest.
-const LONGEST_TRANSIENT: f64 = 0.02;
+/// The transient fades where the lag is about this share of the run and longer: it could not be told from the rest.
+const LONGEST_TRANSIENT: f64 = 0.1;
+/// The same where it is about this share of a sample and shorter: it would only fit the first sample.
+const SHORTEST_TRANSIENT: f64 = 0.5;
+/// How sharply, as a power.
+const FADES: i32 = 8;
 
 /// Coefficients of the basis polynomials lᵢ(s) of the points −2 … 3, from the power 0 on, times [`COMMON`].
 const BASIS: [[f64; POINTS]; POINTS] = [
@@ -110,14 +115,17 @@ fn filtered(values: &[f64], x: f64) -> Vec<f64> {
 }
 
 impl SignalMap for Lag {
+    fn ends_the_chain(&self) -> bool {
+        self.is_measured
+    }
+
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
         let x = signal.time_step_s / self.time_constant_s;
         if signal.values.is_empty() || !x.is_finite() {
             return signal.values.to_vec();
         }
         let mut delivered = filtered(signal.values, x);
-        let long = x * LONGEST_TRANSIENT * (delivered.len() as f64) < 1.0;
-        let Some(measured) = signal.measured.filter(|_| self.is_measured && !long) else {
+        let Some(measured) = signal.measured.filter(|_| self.is_measured) else {
             return delivered;
         };
         let count = (-OVER.ln() / x).ceil() as usize;
@@ -127,7 +135,10 @@ impl SignalMap for Lag {
             along += decay(n) * (measured - value);
             square += decay(n) * decay(n);
         }
-        let transient = along / f64::max(square, 1.0);
+        let long = 1.0 / (x * LONGEST_TRANSIENT * delivered.len() as f64);
+        let short = x * SHORTEST_TRANSIENT;
+        let fades = 1.0 + long.powi(FADES) + short.powi(FADES);
+        let transient = along / (f64::max(square, 1.0) * fades);
         for (n, value) in delivered.iter_mut().take(count).enumerate() {
             *value += transient * decay(n);
         }

@@ -131,7 +131,8 @@ impl Effect for StribeckFriction {
         let &[[low, high], [other_low, other_high], _] = ci95 else {
             return None;
         };
-        (low <= other_high && other_low <= high).then_some(
+        let is_seen = low.is_finite() && high.is_finite() && other_high.is_finite();
+        (is_seen && low <= other_high && other_low <= high).then_some(
             "its two levels of friction are the same but for their intervals: one level would do",
         )
     }
