@@ -154,10 +154,11 @@ fn without(
 pub(crate) fn prune(search: &Search<'_>, set: Hypothesis) -> Result<Hypothesis, EstimateError> {
     let mut set = set;
     loop {
+        // A subset that cannot be simulated takes nothing's place.
         let mut smaller = (0..set.effects().len())
             .into_par_iter()
-            .map(|i| without(search, &set, i))
-            .collect::<Result<Vec<_>, _>>()?;
+            .filter_map(|i| without(search, &set, i).ok())
+            .collect::<Vec<_>>();
         for i in 0..set.effects().len() {
             smaller.extend(search.shrink(&set, i)?);
         }

@@ -113,6 +113,17 @@ fn verify_attached_mode_at_its_host() {
     assert_eq!(changed.matrices().unwrap().mass_matrix[(0, 0)], before);
 }
 
+/// A fit may take the mass to nothing and the start kilometres off: that is no hidden mass.
+#[test]
+fn verify_an_attached_mass_of_nothing_is_no_hypothesis() {
+    let keeps = |share: f64| {
+        let mass_kg = share * scale().mass_kg;
+        effect("attached_mode").keeps_its_meaning(&[mass_kg, 12.0, 0.01, 0.0, 0.0], &scale())
+    };
+    assert!(keeps(0.5) && keeps(1e-4));
+    assert!(!keeps(1e-6) && !keeps(0.0));
+}
+
 #[test]
 fn verify_attached_mode_without_mass_is_none() {
     let values = [0.0, 5.0, 0.03, 1e-4, 0.2];

@@ -72,6 +72,9 @@ pub(super) fn octaves(scale: &SiteScale) -> impl Iterator<Item = f64> + use<> {
     each.take_while(move |freq| *freq < nyquist)
 }
 
+/// Smallest attached mass, as a share of its host.
+const LIGHTEST: f64 = 1e-5;
+
 impl Effect for AttachedMode {
     fn kind(&self) -> &'static str {
         "attached_mode"
@@ -138,6 +141,11 @@ impl Effect for AttachedMode {
             }
         }
         starts
+    }
+
+    /// A lighter one is no mass but a force that dies away, carried by a start kilometres off.
+    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+        values[0] >= LIGHTEST * scale.mass_kg
     }
 
     fn turns_into(&self) -> &'static [&'static str] {
