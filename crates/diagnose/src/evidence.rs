@@ -74,7 +74,7 @@ fn count(fit: &Fit, of: impl Fn(Family) -> bool) -> f64 {
     parameters.map(times).sum::<usize>() as f64
 }
 
-fn is_nominal(placed: &Placed) -> bool {
+pub(crate) fn is_nominal(placed: &Placed) -> bool {
     placed.effect.family() == Family::NominalParameter
 }
 

@@ -4,6 +4,7 @@ use simgap_effects::{Action, Placed};
 use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states, simulator_at};
 use simgap_model::Location;
 use simgap_signal::noise::white_noise_std;
+use simgap_simulate::Simulator;
 
 use crate::diagnosis::{ChannelGap, Gap};
 
@@ -13,8 +14,8 @@ const TINY: f64 = 1e-6;
 
 /// Predictions of the check runs by one model, and their nrmse.
 pub(crate) struct Prediction {
-    /// For each run and channel, what is predicted.
-    pub(crate) predicted: Vec<Vec<Vec<f64>>>,
+    /// The model as it predicts each run; none for traces that come from elsewhere.
+    pub(crate) simulators: Vec<Simulator>,
     /// For each run and channel, measured minus predicted; zero where the prediction says nothing.
     pub(crate) discrepancy: Vec<Vec<Vec<f64>>>,
     /// Initial state of each run.
@@ -39,12 +40,11 @@ pub(crate) fn predict(
         .collect();
     let mut with_effects = check.with_runs(vec![]);
     with_effects.given.extend(effects.iter().cloned());
-    let runs = check.runs.iter().zip(&fit.estimate.initial).enumerate();
-    let predicted = runs
-        .map(|(r, (run, initial))| simulator_at(&with_effects, &fit, r)?.predict(run, initial))
+    let simulators = (0..check.runs.len())
+        .map(|run| simulator_at(&with_effects, &fit, run))
         .collect::<Result<_, _>>()?;
     Ok(Prediction {
-        predicted,
+        simulators,
         discrepancy: fit.discrepancy,
         initial: fit.estimate.initial,
         nrmse,

@@ -3,10 +3,10 @@
 //! A support that gives way is a softer spring below its own mode, an attached mass a heavier one. Where the
 //! answer names parameters, the data may not contradict such dynamics either.
 
-use simgap_effects::{Family, Placed};
+use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Start};
 
-use crate::evidence::probabilities;
+use crate::evidence::{is_nominal, probabilities};
 use crate::hypothesis::{Hypothesis, name, sort, unique};
 use crate::search::Search;
 use crate::verdict::{INDISTINGUISHABLE, Judged, Swap, identified, replacement};
@@ -40,10 +40,9 @@ pub(crate) fn add_rivals_out_of_sight(
     for (i, judged) in judged.iter_mut().enumerate() {
         let mut limits = vec![judged.placed.clone()];
         let mut rivals = search.grow(settled, i)?;
-        let equals = judged.swaps.iter().filter(|swap| {
-            swap.placed.effect.family() == Family::NominalParameter
-                && swap.misfit < INDISTINGUISHABLE
-        });
+        let equals = judged.swaps.iter();
+        let equals =
+            equals.filter(|swap| is_nominal(&swap.placed) && swap.misfit < INDISTINGUISHABLE);
         for swap in equals {
             let instead = search.fit(&adjusted(&swap.estimate, nominal))?;
             let mut effects = instead.effects().iter();

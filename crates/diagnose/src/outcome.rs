@@ -1,7 +1,7 @@
 //! What goes out beside the diagnosis: the corrected model, the predictions.
 
 use simgap_effects::{Action, Family, Placed};
-use simgap_estimate::Problem;
+use simgap_estimate::{EstimateError, Problem};
 use simgap_model::{Location, Model};
 
 use crate::data::Data;
@@ -41,26 +41,25 @@ pub(crate) fn series(
     data: &Data,
     nominal: &Prediction,
     corrected: &Prediction,
-) -> Vec<CheckSeries> {
-    let outputs = &check.model.outputs;
-    check
-        .runs
-        .iter()
-        .enumerate()
-        .map(|(r, run)| CheckSeries {
+) -> Result<Vec<CheckSeries>, EstimateError> {
+    let mut series = Vec::with_capacity(check.runs.len());
+    for (r, run) in check.runs.iter().enumerate() {
+        let predicted = |p: &Prediction| p.simulators[r].predict(run, &p.initial[r]);
+        let both = predicted(nominal)?.into_iter().zip(predicted(corrected)?);
+        let channels = both
+            .enumerate()
+            .map(|(c, (nominal, corrected))| ChannelSeries {
+                channel: check.model.outputs[c].channel.clone(),
+                unit: data.output_units[c],
+                nominal,
+                corrected,
+                measured: run.measured[c].clone().unwrap_or_default(),
+            });
+        series.push(CheckSeries {
             record: run.name.clone(),
             time_s: data.check_times[r].clone(),
-            channels: outputs
-                .iter()
-                .enumerate()
-                .map(|(c, output)| ChannelSeries {
-                    channel: output.channel.clone(),
-                    unit: data.output_units[c],
-                    nominal: nominal.predicted[r][c].clone(),
-                    corrected: corrected.predicted[r][c].clone(),
-                    measured: run.measured[c].clone().unwrap_or_default(),
-                })
-                .collect(),
-        })
-        .collect()
+            channels: channels.collect(),
+        });
+    }
+    Ok(series)
 }

@@ -206,7 +206,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
             notes,
         },
         corrected: corrected_model(request.model, &placed),
-        series: series(&check, &data, &predictions[0], &predictions[shown]),
+        series: series(&check, &data, &predictions[0], &predictions[shown])?,
         motions,
     })
 }

@@ -1,11 +1,11 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Equivalent, Family, Placed, same_place};
+use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, Fit, Interval, Problem, Start};
 
 use crate::confirm::confirmed;
-use crate::evidence::{freedom, probabilities};
+use crate::evidence::{freedom, is_nominal, probabilities};
 use crate::hypothesis::{Hypothesis, name, pull, remove, sort, unique};
 use crate::out_of_sight::turns_into;
 use crate::search::Search;
@@ -121,8 +121,7 @@ pub(crate) fn simplest(
 
 /// Whether a smaller set predicts as well as a larger one but for what a simulation may be off.
 fn does_as_well(search: &Search<'_>, larger: &Hypothesis, smaller: &Hypothesis) -> bool {
-    let mut effects = smaller.effects().iter();
-    let of_parameters = effects.all(|p| p.effect.family() == Family::NominalParameter);
+    let of_parameters = smaller.effects().iter().all(is_nominal);
     let holds = if of_parameters && is_under_prior(larger, smaller) {
         larger.evidence - smaller.evidence <= EARNS_AS_PARAMETER
     } else {

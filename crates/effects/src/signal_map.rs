@@ -45,7 +45,8 @@ pub trait SignalMap: Send + Sync {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64>;
 
     /// The samples that are made of the signal alone, not of what was before or comes after the record; at
-    /// either end no more than a hundredth of the record is left out, of a short one eight samples. `values` of the signal may be any.
+    /// either end no more than a hundredth of the record is left out, of a short one eight samples. Of `values`
+    /// only the length counts.
     fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
         0..signal.values.len()
     }
@@ -63,6 +64,13 @@ pub trait SignalMap: Send + Sync {
 }
 
 impl Sampled<'_> {
+    /// The values at a position for each sample.
+    pub(crate) fn moved(&self, position: impl Fn(usize) -> f64) -> Vec<f64> {
+        (0..self.values.len())
+            .map(|i| self.at(position(i)))
+            .collect()
+    }
+
     /// The samples whose positions are on the record, see [`SignalMap::reach`].
     pub(crate) fn on_record(&self, position: impl Fn(usize) -> f64) -> Range<usize> {
         let len = self.values.len();

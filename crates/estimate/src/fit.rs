@@ -108,7 +108,6 @@ pub(crate) fn fit_with(
     while iterations < weights.most_steps {
         iterations += 1;
         let search = Line {
-            problem,
             layout: &layout,
             merit: &merit,
         };
@@ -158,7 +157,6 @@ struct Next {
 
 /// Where steps are searched.
 struct Line<'a> {
-    problem: &'a Problem,
     layout: &'a Layout,
     merit: &'a Merit<'a>,
 }
@@ -184,7 +182,7 @@ impl Line<'_> {
             })
             .collect();
         // One trial is mostly enough; where it is not, further ones cost little side by side.
-        let together = (LANES / self.problem.runs.len().max(1)).max(1);
+        let together = (LANES / self.merit.problem.runs.len().max(1)).max(1);
         let mut tried = 0;
         while tried < MOST_DAMPINGS {
             let count = if tried == 0 { 1 } else { together };
@@ -212,7 +210,7 @@ impl Line<'_> {
     /// The first of several trials, in their order, that lowers the objective.
     fn first_better(&self, objective: f64, trials: Vec<(f64, Vec<f64>)>) -> Option<(f64, Next)> {
         let (dampings, thetas): (Vec<f64>, Vec<Vec<f64>>) = trials.into_iter().unzip();
-        let all = discrepancies_of(self.problem, self.layout, &thetas);
+        let all = discrepancies_of(self.merit.problem, self.layout, &thetas);
         for ((damping, theta), discrepancy) in dampings.into_iter().zip(thetas).zip(all) {
             let Ok(discrepancy) = discrepancy else {
                 continue;

@@ -181,8 +181,6 @@ fn found(pairing: &Pairing, problem: &Problem, diagnosis: &Diagnosis) -> Where {
         let pairs = trace.measured.iter().zip(&trace.simulated);
         pairs.map(|(m, s)| m - s).collect()
     };
-    let traces = pairing.traces.iter();
-    let simulated = traces.map(|trace| trace.simulated.clone()).collect();
     let discrepancy: Vec<Vec<f64>> = pairing.traces.iter().map(off).collect();
     let std = problem.output_std();
     let rms = |d: &[f64]| (d.iter().map(|v| v * v).sum::<f64>() / d.len().max(1) as f64).sqrt();
@@ -192,7 +190,7 @@ fn found(pairing: &Pairing, problem: &Problem, diagnosis: &Diagnosis) -> Where {
             .zip(&std)
             .map(|(d, s)| rms(d) / s)
             .collect(),
-        predicted: vec![simulated],
+        simulators: vec![],
         discrepancy: vec![discrepancy],
         initial: vec![vec![]],
     };

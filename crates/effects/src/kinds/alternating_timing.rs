@@ -24,9 +24,7 @@ impl SignalMap for Alternation {
                 -shift
             }
         };
-        (0..signal.values.len())
-            .map(|i| signal.at(i as f64 + sign(i)))
-            .collect()
+        signal.moved(|i| i as f64 + sign(i))
     }
 }
 

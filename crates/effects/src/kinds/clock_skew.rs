@@ -32,9 +32,7 @@ impl Skew {
 
 impl SignalMap for Skew {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
-        (0..signal.values.len())
-            .map(|i| signal.at(self.position(&signal, i)))
-            .collect()
+        signal.moved(|i| self.position(&signal, i))
     }
 
     fn reach(&self, signal: Sampled<'_>) -> Range<usize> {

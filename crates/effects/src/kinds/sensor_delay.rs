@@ -16,17 +16,19 @@ pub(super) struct Delay {
     pub(super) delay_s: f64,
 }
 
+impl Delay {
+    fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
+        i as f64 - self.delay_s / signal.time_step_s
+    }
+}
+
 impl SignalMap for Delay {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
-        let shift = self.delay_s / signal.time_step_s;
-        (0..signal.values.len())
-            .map(|i| signal.at(i as f64 - shift))
-            .collect()
+        signal.moved(|i| self.position(&signal, i))
     }
 
     fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
-        let shift = self.delay_s / signal.time_step_s;
-        signal.on_record(|i| i as f64 - shift)
+        signal.on_record(|i| self.position(&signal, i))
     }
 }
 
