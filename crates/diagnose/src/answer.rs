@@ -1,8 +1,8 @@
 //! The answer in words and numbers.
 
 use rayon::prelude::*;
-use simgap_effects::{Family, Placed, find, same_place};
-use simgap_estimate::{EstimateError, Problem, Weights};
+use simgap_effects::{Action, Family, Placed, find, same_place};
+use simgap_estimate::{EstimateError, Interval, Problem, Weights};
 use simgap_model::Location;
 
 use crate::diagnosis::{
@@ -27,10 +27,20 @@ const ANOTHER_LAW: f64 = 0.3;
 /// Share of the gap on the check records that a name which may be a stand-in may leave: with less, it
 /// serves as well as the law it stands in for.
 const STAND_IN_LEAVES: f64 = 0.03;
+/// Values within this share of each other are the same.
+const ALIKE: f64 = 0.01;
 /// Two laws at one place that are there leave the noise of the check records, but for this factor.
 const TWO_STAND_OUT: f64 = 1.03;
+/// Effects that close less than [`CLOSES`] of the gap on the check records, and less than this of what
+/// parameters alone leave, are of no use.
+const OF_SOME_USE: f64 = 0.3;
+/// A name that may be a stand-in and leaves more than [`STAND_IN_LEAVES`] must not stand out of the noise by
+/// more than this.
+const STAND_IN_STANDS_OUT: f64 = 1.2;
 /// What leaves less than this multiple of the noise leaves nothing.
 pub(crate) const NOTHING_BUT_NOISE: f64 = 1.1;
+/// The same where samples are lost or stored in steps: no model says which, and the noise is known less well.
+const NOTHING_BUT_EVENTS: f64 = 1.3;
 /// How often a name is right that beats its rivals by far, and one that may be a stand-in; on
 /// generated cases.
 const TRUST: [f64; 2] = [0.97, 0.8];
@@ -102,7 +112,12 @@ fn trust(in_doubt: bool) -> f64 {
 
 /// Whether structure well above the noise is left that the set does not explain.
 fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
-    if imitation(answer, gap) || another_law(answer, gap) {
+    if imitation(answer, gap)
+        || another_law(answer, gap)
+        || is_poor_stand_in(answer, gap) && !answer.follows_anew
+        || is_of_no_use(answer, gap, status)
+        || on_every_channel(train, answer)
+    {
         return true;
     }
     // What remains must stand out of the noise, and not be a trifle of the motion itself.
@@ -142,11 +157,20 @@ pub(crate) fn leaves_much(gap: &Gap) -> bool {
         && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < CLOSES_BEYOND_RECALIBRATION
 }
 
-/// Whether a set with one law of the machine at the most leaves nothing but noise of the records it was
+/// Whether a set with one force at the most, and no dynamics, leaves nothing but noise of the records it was
 /// fitted to. Where it fails on the check records then, their motion hangs on differences that no estimate
 /// resolves: play, sticking.
 fn explains_all_it_saw(answer: &Answer) -> bool {
-    laws(answer) <= 1 && answer.remainder.over_noise < NOTHING_BUT_NOISE
+    let mut named = answer.judged.iter().map(|judged| &judged.placed);
+    let has_dynamics = named
+        .clone()
+        .any(|placed| placed.effect.family() == Family::Dynamics);
+    let most = if named.any(|placed| matches!(placed.action(), Action::Sampling(_))) {
+        NOTHING_BUT_EVENTS
+    } else {
+        NOTHING_BUT_NOISE
+    };
+    !has_dynamics && laws(answer) <= 1 && answer.remainder.over_noise < most
 }
 
 /// Named forces and dynamics.
@@ -155,6 +179,12 @@ pub(crate) fn laws(answer: &Answer) -> usize {
     named
         .filter(|judged| judged.placed.effect.family().is_law())
         .count()
+}
+
+/// Whether a force is named: only with one may motions that begin alike part.
+pub(crate) fn has_force(answer: &Answer) -> bool {
+    let mut named = answer.judged.iter();
+    named.any(|judged| judged.placed.effect.family() == Family::Force)
 }
 
 /// Whether several forces and dynamics together leave more than true ones would: a law that the
@@ -170,8 +200,7 @@ fn imitation(answer: &Answer, gap: &Gap) -> bool {
 /// Whether two laws at one place leave more than one law that stands in for a foreign one may.
 fn two_for_one(answer: &Answer, gap: &Gap) -> bool {
     let mut each = 0..answer.judged.len();
-    laws(answer) > 0
-        && each.any(|i| company(answer, i).is_some())
+    each.any(|i| company(answer, i).is_some())
         && gap.closed < 1.0 - STAND_IN_LEAVES
         && gap.corrected > TWO_STAND_OUT * gap.noise_floor
 }
@@ -182,11 +211,59 @@ fn another_law(answer: &Answer, gap: &Gap) -> bool {
         return false;
     };
     let mut named = answer.judged.iter().map(|judged| &judged.placed);
+    let is_here =
+        |placed: &Placed| placed.at == law.at && placed.effect.family() == law.effect.family();
+    // Parameters alone leave room for a law at any place.
+    let mut laws = named
+        .clone()
+        .filter(|placed| placed.effect.family() != Family::NominalParameter);
     law.share > ANOTHER_LAW
         && gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor
         && gap.closed < 1.0 - STAND_IN_LEAVES
         && gap.corrected > TRIFLE
-        && named.any(|placed| placed.at == law.at && placed.effect.family() == law.effect.family())
+        && (named.any(is_here) || laws.next().is_none())
+}
+
+/// Whether a name that may be a stand-in leaves more than a stand-in may.
+pub(crate) fn is_poor_stand_in(answer: &Answer, gap: &Gap) -> bool {
+    gap.closed < 1.0 - STAND_IN_LEAVES
+        && gap.corrected > STAND_IN_STANDS_OUT * gap.noise_floor
+        && (0..answer.judged.len()).any(|i| !doubts(answer, i).is_empty())
+}
+
+/// Whether named effects do hardly better on the check records than parameters alone.
+fn is_of_no_use(answer: &Answer, gap: &Gap, status: Status) -> bool {
+    status == Status::Effect
+        && gap.closed < CLOSES
+        && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < OF_SOME_USE
+        && !explains_all_it_saw(answer)
+        && !answer.follows_anew
+}
+
+/// Whether the same effect of the measurement chain, with the same values, is named on every one of several
+/// channels: its cause is common to them, and lies before the sensors.
+fn on_every_channel(train: &Problem, answer: &Answer) -> bool {
+    let channels = train.model.outputs.len();
+    let of_kind = |kind: &str| {
+        let all = answer.judged.iter().zip(&answer.estimate.intervals);
+        let same = all.filter(|(judged, _)| judged.placed.effect.kind() == kind);
+        same.map(|(_, intervals)| intervals).collect::<Vec<_>>()
+    };
+    let agree = |one: &Vec<Interval>, other: &Vec<Interval>| {
+        let mut both = one.iter().zip(other);
+        both.all(|(a, b)| {
+            let apart = (a.value - b.value).abs();
+            apart <= ALIKE * a.value.abs() || a.ci95[0] <= b.ci95[1] && b.ci95[0] <= a.ci95[1]
+        })
+    };
+    let mut smooth = answer.judged.iter().map(|judged| &judged.placed);
+    channels > 1
+        && smooth.any(|placed| {
+            let on = of_kind(placed.effect.kind());
+            matches!(placed.action(), Action::Output(_))
+                && on.len() == channels
+                && on.windows(2).all(|pair| agree(pair[0], pair[1]))
+        })
 }
 
 fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
@@ -234,8 +311,12 @@ fn rivals(answer: &Answer, judged: &Judged) -> Vec<Rival> {
         })
         .collect();
     close.sort_by(|a, b| {
+        // What is the same where a mode is out of sight comes before what happens to fit as well.
+        let by_sight = out_of_sight(b).is_some().cmp(&out_of_sight(a).is_some());
         let by_fit = a.misfit.total_cmp(&b.misfit);
-        b.evidence.total_cmp(&a.evidence).then(by_fit)
+        by_sight
+            .then(b.evidence.total_cmp(&a.evidence))
+            .then(by_fit)
     });
     let own = judged.placed.effect.kind();
     let same = judged.same.iter().map(|other| Rival {

@@ -1,16 +1,17 @@
 //! How much the data speak for a set of effects.
 //!
 //! ```text
-//! E = −J − ½ k ln N_eff − ½ Σ_j min(λ_j, ln N_eff) − p ln(σ_free / σ_0)     (1)
+//! E = −J − ½ k ln N_eff − ½ Σ_j min(ln(1 + w² λ_j), ln N_eff) − p ln(σ_free / σ_0)     (1)
 //! N_eff = Σ_c ρ_c N,   ρ_c = N_eff,c / N of the residual                    (2)
 //! p_i = exp(E_i / T) / Σ_j exp(E_j / T)                                     (3)
 //! ```
 //!
-//! J is the objective of the fit, k the number of parameters of the effects but for hidden dynamics, λ_j
-//! the information on those of hidden dynamics, p the number of nominal parameters which left the prior
-//! σ_0 for one as wide as σ_free. (1) is the Bayesian information criterion with the number of samples
-//! that are independent, \[Schwarz1978\], where a direction that no data see costs no more than the fit
-//! would lose without it; the temperature T in (3) allows for what (2) does not see.
+//! J is the objective of the fit, k the number of parameters of the effects but for hidden masses, λ_j
+//! the information on those of hidden masses in units of their values, w how far off they may be before, in
+//! the same units, p the number of nominal parameters which left the prior σ_0 for one as wide as σ_free. (1)
+//! is the Bayesian information criterion with the number of samples that are independent, \[Schwarz1978\].
+//! Hidden masses are seen in a few directions only, and cost what the data narrow each of them down; the
+//! temperature T in (3) allows for what (2) does not see.
 
 use simgap_effects::{Family, Parameter, Placed};
 use simgap_estimate::{Fit, Problem, Weights};
@@ -21,6 +22,9 @@ const TEMPERATURE: f64 = 2.0;
 
 /// ln(σ_free / σ_0) of (1): known to a third instead of a fiftieth.
 const FREED: f64 = 2.8;
+
+/// w of (1): the order of magnitude is known.
+const KNOWN_BEFORE: f64 = 2.0;
 
 /// Share of independent samples in the discrepancy of each channel, (2).
 pub(crate) fn independence(fit: &Fit, channels: usize) -> Vec<f64> {
@@ -53,8 +57,9 @@ pub(crate) fn evidence(fit: &Fit, effective_samples: f64) -> f64 {
 /// The second and the third term of (1).
 fn penalty(fit: &Fit, effective_samples: f64) -> f64 {
     let most = effective_samples.ln();
-    let hidden = fit.information.iter().map(|known| known.min(most));
-    let known = count(fit, |family| family != Family::Dynamics);
+    let seen = |known: &f64| (KNOWN_BEFORE.powi(2) * known.max(0.0)).ln_1p().min(most);
+    let hidden = fit.information.iter().map(seen);
+    let known = count(fit, |placed| !placed.action().adds_mass());
     0.5 * (known * most + hidden.sum::<f64>())
 }
 
@@ -64,12 +69,12 @@ pub(crate) fn freedom(fit: &Fit) -> f64 {
     count(fit, |_| true)
 }
 
-/// Parameters of the effects of some families, nominal parameters aside.
-fn count(fit: &Fit, of: impl Fn(Family) -> bool) -> f64 {
+/// Parameters of some of the effects, nominal parameters aside.
+fn count(fit: &Fit, of: impl Fn(&Placed) -> bool) -> f64 {
     let runs = fit.estimate.initial.len();
     let times = |parameter: &Parameter| if parameter.per_record { runs } else { 1 };
     let effects = fit.estimate.effects.iter();
-    let effects = effects.filter(|placed| !is_nominal(placed) && of(placed.effect.family()));
+    let effects = effects.filter(|placed| !is_nominal(placed) && of(placed));
     let parameters = effects.flat_map(|placed| placed.effect.parameters());
     parameters.map(times).sum::<usize>() as f64
 }

@@ -4,12 +4,51 @@
 //! answer names parameters, the data may not contradict such dynamics either.
 
 use simgap_effects::Placed;
-use simgap_estimate::{EstimateError, Start};
+use simgap_estimate::{Base, EstimateError, Start, score_outright};
 
 use crate::evidence::{is_nominal, probabilities};
-use crate::hypothesis::{Hypothesis, name, sort, unique};
+use crate::hypothesis::{Hypothesis, add, name, sort, unique};
 use crate::search::Search;
 use crate::verdict::{INDISTINGUISHABLE, Judged, Swap, identified, replacement};
+
+/// A nominal parameter on its own may be behind re-estimated ones by this evidence, and what turns into it is
+/// still looked for.
+const BEHIND: f64 = 4.0;
+/// Hidden masses are fitted from this many of the values at which they act as the parameter does.
+const STARTS: usize = 2;
+
+impl Search<'_> {
+    /// Hidden masses, fitted from where they act as a fitted nominal parameter of their place does.
+    pub(crate) fn fit_out_of_sight(
+        &self,
+        base: &Hypothesis,
+        singles: &[Hypothesis],
+        linear: &Base<'_>,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        let limits = singles
+            .iter()
+            .filter(|single| single.evidence > base.evidence - BEHIND);
+        let limits = limits.filter_map(|single| match single.effects() {
+            [limit] if is_nominal(limit) => Some(limit),
+            _ => None,
+        });
+        let mut starts: Vec<Start> = Vec::new();
+        for limit in limits {
+            let kind = limit.effect.kind();
+            for (candidate, scale) in &self.candidates {
+                let turns = candidate.effect.turns_into().contains(&kind);
+                if !turns || candidate.at != limit.at {
+                    continue;
+                }
+                let shapes = candidate.effect.grown_from(kind, &limit.values, scale);
+                let best = score_outright(linear, candidate, &shapes).unwrap_or_default();
+                let best = best.into_iter().take(STARTS);
+                starts.extend(best.map(|score| add(&base.fit.estimate, score.start)));
+            }
+        }
+        self.fit_all(&starts, linear)
+    }
+}
 
 /// The kind of an effect that dynamics at its place turn into where their own mode is out of sight.
 pub(crate) fn turns_into(dynamics: &Placed, limit: &Placed) -> Option<&'static str> {

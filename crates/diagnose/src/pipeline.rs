@@ -17,7 +17,7 @@ use crate::out_of_sight::{add_rivals_out_of_sight, adjusted};
 use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
-use crate::verdict::{Judged, is_told_from_none, judge, prune, simplest};
+use crate::verdict::{Judged, SEEN, is_told_from_none, judge, prune, simplest};
 use crate::{DiagnoseError, Gap, answer, locate, stretches};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
@@ -142,7 +142,10 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let mut gap = gap_of(&placed, &predictions);
     let harms = |gap: &Gap| gap.corrected > HARMS * gap.recalibrated;
     // A law that fails on the check records, or another motion of the same law?
-    let anew = if answer::laws(&answer) > 0 && (harms(&gap) || answer::leaves_much(&gap)) {
+    let fails = |answer: &Answer| {
+        harms(&gap) || answer::leaves_much(&gap) || answer::is_poor_stand_in(answer, &gap)
+    };
+    let anew = if answer::has_force(&answer) && fails(&answer) {
         let known = &recalibrated.estimate.nominal;
         stretches::gap_started_anew(&check, known, &placed, &plain).ok()
     } else {
@@ -315,7 +318,16 @@ fn search(
     progress("verdict");
     let best = simplest(&search, finalists, &singles).unwrap_or(base);
     let set = prune(&search, best)?;
-    let (mut set, mut judged) = if set.effects().is_empty() {
+    // A rival that takes a place may turn out to earn none either.
+    let judged = if set.effects().is_empty() {
+        None
+    } else {
+        Some(judge(&search, set, MOST_SWAPS)?)
+    };
+    let judged = judged.filter(|(set, _)| !set.effects().is_empty());
+    let (mut set, mut judged) = if let Some(judged) = judged {
+        judged
+    } else {
         // Nothing beyond small errors of the nominal parameters: which of them are seen, when the
         // others are held exactly?
         progress("exact parameters");
@@ -327,8 +339,6 @@ fn search(
         let best = parameters.run(&exact, &|_| {})?.into_iter().next();
         let seen = prune(&parameters, best.unwrap_or(exact))?;
         judge(&parameters, seen, MOST_SWAPS)?
-    } else {
-        judge(&search, set, MOST_SWAPS)?
     };
     let mut start = set.fit.estimate.clone();
     let remainder = if start.nominal.is_empty() {
@@ -376,6 +386,7 @@ fn first_unseen(estimate: &Fit, judged: &[Judged]) -> Option<usize> {
     let mut named = judged.iter().zip(&estimate.intervals);
     named.position(|(judged, intervals)| {
         judged.placed.effect.family() != Family::NominalParameter
+            && judged.relevance <= SEEN
             && !is_told_from_none(&judged.placed, intervals)
     })
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! excess = Σ_c ρ_c (1 − N_c / V_c) / Σ_c ρ_c                             (1)
 //! share  = (bᵀâ / rᵀWr) / excess                                         (2)
+//! over   = √(mean_c V_c / N_c)                                           (3)
 //! ```
 //!
 //! V_c is the squared discrepancy of a channel, N_c its white noise, ρ_c the share of its samples
@@ -23,7 +24,8 @@ use crate::search::Search;
 
 /// What a set leaves.
 pub(crate) struct Remainder {
-    /// rms over that of the noise.
+    /// rms over that of the noise, (3). Every channel counts alike: one that is left with a swing has few
+    /// independent samples, and would hardly count in (1).
     pub(crate) over_noise: f64,
     /// The free law that explains most.
     pub(crate) law: Option<FreeLaw>,
@@ -47,18 +49,20 @@ impl Remainder {
     }
 }
 
-/// What a set leaves, by (1) and (2).
+/// What a set leaves, by (1) to (3).
 pub(crate) fn remainder(search: &Search<'_>, set: &Hypothesis) -> Result<Remainder, EstimateError> {
     let stepped = stepped(search.problem, set.effects());
     let noise = noise_variance(&set.fit.discrepancy, &stepped);
     let independence = &search.weights.independence;
-    let mut excess = 0.0;
+    let (mut excess, mut over) = (0.0, 0.0);
     for ((left, noise), independence) in set.fit.variance.iter().zip(&noise).zip(independence) {
-        excess += independence * (1.0 - noise / left.max(f64::MIN_POSITIVE)).max(0.0);
+        let ratio = left.max(f64::MIN_POSITIVE) / noise.max(f64::MIN_POSITIVE);
+        excess += independence * (1.0 - ratio.recip()).max(0.0);
+        over += ratio;
     }
     excess /= independence.iter().sum::<f64>();
     Ok(Remainder {
-        over_noise: (1.0 - excess).max(1e-12).sqrt().recip(),
+        over_noise: (over / noise.len().max(1) as f64).sqrt(),
         law: best_law(search, set, excess)?,
     })
 }

@@ -11,13 +11,18 @@ use simgap_effects::{
 use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
 };
-use simgap_model::Location;
+use simgap_model::{GROUND, Location};
 
+use crate::accuracy::accuracy;
 use crate::evidence::{effective_samples, evidence, freedom};
-use crate::hypothesis::{Hypothesis, add, name, pull, pull_of, replace, same, sort, unique};
+use crate::hypothesis::{
+    Hypothesis, add, name, pull, pull_of, remove, replace, same, sort, unique,
+};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
+/// Single effects that a second one is fitted beside from afar.
+const SURVIVORS_AFAR: usize = 2;
 /// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Steps of a rough fit, and of one of the search that is finished.
@@ -45,6 +50,8 @@ pub(crate) struct Search<'a> {
     /// rms of the discrepancy of the model as given for each channel, at most that of the motion, and
     /// a multiple of what re-estimated parameters leave.
     pub(crate) gap: Vec<f64>,
+    /// How far a simulation of each channel may be off: sets whose predictions differ by less fit alike.
+    pub(crate) accuracy: Vec<f64>,
 }
 
 impl<'a> Search<'a> {
@@ -86,6 +93,7 @@ impl<'a> Search<'a> {
             candidates,
             effective_samples,
             gap: gap.collect(),
+            accuracy: accuracy(problem, baseline)?,
         })
     }
 
@@ -101,6 +109,7 @@ impl<'a> Search<'a> {
                 .collect(),
             effective_samples: self.effective_samples,
             gap: self.gap.clone(),
+            accuracy: self.accuracy.clone(),
         }
     }
 
@@ -145,7 +154,7 @@ impl<'a> Search<'a> {
         self.fit_all(&starts, linear)
     }
 
-    /// The sets in which one effect has grown into one that contains it or turns into it.
+    /// The sets in which one effect has grown into one that contains it, turns into it or resembles it.
     pub(crate) fn grow(
         &self,
         base: &Hypothesis,
@@ -212,19 +221,24 @@ impl<'a> Search<'a> {
 
     fn grown(&self, base: &Hypothesis, index: usize) -> Vec<Start> {
         let old = &base.effects()[index];
-        let larger = self.candidates.iter().filter(|(candidate, _)| {
+        let kind = old.effect.kind();
+        let larger = self.candidates.iter().filter_map(|(candidate, scale)| {
             let effect = candidate.effect;
             let mut smaller = effect.contains().iter().chain(effect.turns_into());
-            candidate.at == old.at && smaller.any(|kind| *kind == old.effect.kind())
+            if candidate.at == old.at && smaller.any(|known| *known == kind) {
+                return Some((candidate, *scale));
+            }
+            // Of a mass and its spring to the ground, the spring has the sizes.
+            let spring = spring_to_ground(&candidate.at, &old.at)?;
+            let resembles = effect.resembles().contains(&kind);
+            Some((candidate, self.scale_at(spring)?)).filter(|_| resembles)
         });
         larger
             .flat_map(|(candidate, scale)| {
-                let shapes = candidate
-                    .effect
-                    .grown_from(old.effect.kind(), &old.values, scale);
-                shapes.into_iter().map(|values| {
-                    let grown = Placed::new(candidate.effect, old.at.clone(), values);
-                    replace(&base.fit.estimate, index, grown)
+                let shapes = candidate.effect.grown_from(kind, &old.values, &scale);
+                shapes.into_iter().map(move |values| {
+                    let grown = Placed::new(candidate.effect, candidate.at.clone(), values);
+                    without_limits(replace(&base.fit.estimate, index, grown.clone()), &grown)
                 })
             })
             .collect()
@@ -362,6 +376,9 @@ impl<'a> Search<'a> {
             sort(&mut pool);
             unique(&mut pool);
         }
+        pool.extend(self.fit_out_of_sight(base, &pool, &linear)?);
+        sort(&mut pool);
+        unique(&mut pool);
         let mut front = pool.clone();
         for (size, survivors) in SURVIVORS.iter().enumerate() {
             if pool.iter().any(|set| self.is_exhausted(set)) {
@@ -370,24 +387,47 @@ impl<'a> Search<'a> {
             step(["pairs of effects", "sets of three"][size]);
             let mut next: Vec<Hypothesis> = Vec::new();
             for survivor in front.iter().take(*survivors) {
-                for hypothesis in self.extend(survivor, FITTED[size + 1])? {
-                    match next
-                        .iter_mut()
-                        .find(|known| known.key() == hypothesis.key())
-                    {
-                        Some(known) if known.evidence >= hypothesis.evidence => {}
-                        Some(known) => *known = hypothesis,
-                        None => next.push(hypothesis),
-                    }
+                next.extend(self.extend(survivor, FITTED[size + 1])?);
+            }
+            if size == 0 && !next.iter().any(|set| self.is_exhausted(set)) {
+                step("pairs of effects from afar");
+                for survivor in front.iter().take(SURVIVORS_AFAR) {
+                    let linear = linearise_at(self.problem, &survivor.fit, &self.weights)?;
+                    next.extend(self.fit_from_afar(survivor, &linear)?);
                 }
             }
             sort(&mut next);
+            unique(&mut next);
             pool.extend(next.iter().cloned());
             front = next;
         }
         sort(&mut pool);
         unique(&mut pool);
         Ok(pool)
+    }
+}
+
+/// A start without the other parameters that an effect of it turns into: it takes the place of all.
+fn without_limits(mut start: Start, dynamics: &Placed) -> Start {
+    let is_limit = |placed: &Placed| {
+        let turns = dynamics.effect.turns_into().contains(&placed.effect.kind());
+        turns && placed.at == dynamics.at
+    };
+    while let Some(i) = start.effects.iter().position(is_limit) {
+        start = remove(&start, i);
+    }
+    start
+}
+
+/// The spring, of a mass and its spring to the ground.
+fn spring_to_ground<'a>(one: &'a Location, other: &'a Location) -> Option<&'a Location> {
+    match (one, other) {
+        (Location::Mass(mass), spring @ Location::Between(pair))
+        | (spring @ Location::Between(pair), Location::Mass(mass)) => {
+            let joins = pair.contains(mass) && pair.iter().any(|node| node == GROUND);
+            joins.then_some(spring)
+        }
+        _ => None,
     }
 }
 

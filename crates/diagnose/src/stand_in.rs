@@ -1,6 +1,6 @@
 //! Signs that a named effect only stands in for a law that the catalogue does not have.
 
-use simgap_effects::{Family, Parameter, Placed};
+use simgap_effects::{Action, Family, Parameter, Placed};
 use simgap_estimate::Interval;
 
 use crate::pipeline::Answer;
@@ -9,14 +9,19 @@ use crate::pipeline::Answer;
 const AT_THE_END: f64 = 1e-3;
 /// A shape whose interval spans more than this factor is not seen.
 const UNSEEN: f64 = 10.0;
+/// Factors are the same when their logarithms differ by less than this share: nominal parameters are off by
+/// some percent besides.
+const SAME_FACTOR: f64 = 0.25;
 /// Share of what is left that a law of any shape at the place of the effect may explain.
 const MISFITS: f64 = 0.3;
 
 /// Why the i-th named effect may be a stand-in; empty for one that shows no sign of it.
 pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
-    let placed = &answer.judged[i].placed;
+    let judged = &answer.judged[i];
+    let placed = &judged.placed;
     if placed.effect.family() == Family::NominalParameter {
-        return vec![];
+        let all = same_factor(answer, i);
+        return all.into_iter().map(str::to_owned).collect();
     }
     let mut doubts = Vec::new();
     if let Some(other) = company(answer, i) {
@@ -25,8 +30,8 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
             other.effect.kind()
         ));
     }
-    if placed.action().is_stepped() {
-        // A converter, a lost sample: nothing is fitted whose values could look odd.
+    if matches!(placed.action(), Action::Sampling(_)) {
+        // A converter, a lost sample: values at the end of a range are what they look like.
         return doubts;
     }
     let fitted = answer.estimate.estimate.effects.get(i);
@@ -48,8 +53,13 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
         }
     }
     let ci95: Vec<[f64; 2]> = intervals.map(|interval| interval.ci95).collect();
-    let own = placed.effect.doubt(&ci95);
-    doubts.extend(own.map(str::to_owned));
+    if let Some(scale) = &judged.scale {
+        let own = placed.effect.doubt(&ci95, scale);
+        doubts.extend(own.map(str::to_owned));
+        if !placed.effect.keeps_its_meaning(values, scale) {
+            doubts.push("its values have left what its name means".into());
+        }
+    }
     if let Some(law) = &answer.remainder.law
         && law.at == placed.at
         && law.share > MISFITS
@@ -62,13 +72,39 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
     doubts
 }
 
-/// Another effect of the machine, or a parameter of it, at the place of the i-th.
+/// Another effect at the place of the i-th that together with it may imitate a third: of the machine, or a
+/// parameter of it, where one of the two is a law; before the sampling of a channel.
 pub(crate) fn company(answer: &Answer, i: usize) -> Option<&Placed> {
-    let of_machine = |placed: &Placed| placed.effect.family() != Family::Measurement;
     let own = &answer.judged[i].placed;
     let others = answer.judged.iter().enumerate().filter(|(j, _)| *j != i);
     let mut others = others.map(|(_, judged)| &judged.placed);
-    others.find(|other| of_machine(own) && of_machine(other) && other.at == own.at)
+    others.find(|other| other.at == own.at && may_imitate(own, other))
+}
+
+fn may_imitate(one: &Placed, other: &Placed) -> bool {
+    let both = |is: fn(&Placed) -> bool| is(one) && is(other);
+    let is_law = |placed: &Placed| placed.effect.family().is_law();
+    both(|placed| placed.effect.family() != Family::Measurement) && (is_law(one) || is_law(other))
+        || both(|placed| matches!(placed.action(), Action::Output(_)))
+}
+
+/// Said of a nominal parameter that is off by the same factor as two others at least, or by its inverse: the
+/// equations of motion may be multiplied by any number.
+fn same_factor(answer: &Answer, i: usize) -> Option<&'static str> {
+    let factor = |placed: &Placed| {
+        let is_factor = placed.effect.family() == Family::NominalParameter;
+        let value = placed.values.first().filter(|_| is_factor)?;
+        (*value > 0.0).then(|| value.ln().abs())
+    };
+    let own = factor(&answer.judged[i].placed)?;
+    let all = answer
+        .judged
+        .iter()
+        .filter_map(|judged| factor(&judged.placed));
+    let alike = all.filter(|other| (other - own).abs() < SAME_FACTOR * own.max(*other));
+    (alike.count() >= 3).then_some(
+        "three parameters are off by the same factor: one that is not among them would do the same",
+    )
 }
 
 /// The ends of the range of a parameter that are neither zero nor infinite.

@@ -1,7 +1,7 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Equivalent, Placed, same_place};
+use simgap_effects::{Equivalent, Placed, SiteScale, same_place};
 use simgap_estimate::{EstimateError, Fit, Interval, Problem, Start};
 
 use crate::confirm::confirmed;
@@ -19,9 +19,6 @@ pub(crate) const RELEVANT: f64 = 0.02;
 /// Smallest motion of an output, relative to its standard deviation, that counts as an effect:
 /// inputs known only at the samples leave the prediction uncertain by about half of it.
 pub(crate) const MOVES: f64 = 3e-3;
-/// Motion of an output, relative to its standard deviation, that a prediction may be off because inputs
-/// are known only at the samples: sets whose fits differ by less fit alike.
-const ACCURACY: f64 = 1.5e-3;
 /// A rival whose evidence is this close cannot be told from the named effect.
 pub(crate) const INDISTINGUISHABLE: f64 = 4.0;
 /// Share of the gap (above the noise floor) that a verdict must close, else the cause is unknown.
@@ -37,6 +34,9 @@ pub(crate) const IMITATION_LEAVES: [f64; 2] = [0.12, 0.05];
 pub(crate) const IMITATION_STANDS_OUT: f64 = 1.25;
 /// A residual below this multiple of the noise floor does not stand out of the noise.
 pub(crate) const STANDS_OUT: f64 = 1.6;
+/// An effect without which the squared discrepancy of a channel would be more than twice as large is seen, even
+/// where only its size and its state at the start together are.
+pub(crate) const SEEN: f64 = 0.5;
 /// A rival must lead by this much to take a place: less is the accuracy of the fits.
 const TIE: f64 = 0.5;
 /// A rival with fewer parameters may be less likely by this much and still take the place.
@@ -68,6 +68,8 @@ pub(crate) struct Swap {
 /// One effect of the answer with its rivals.
 pub(crate) struct Judged {
     pub(crate) placed: Placed,
+    /// Typical sizes at its place.
+    pub(crate) scale: Option<SiteScale>,
     /// What is the same thing by another name on this plant.
     pub(crate) same: Vec<Equivalent>,
     pub(crate) probability: f64,
@@ -219,6 +221,9 @@ fn matters(search: &Search<'_>, set: &Hypothesis, subset: &Hypothesis) -> bool {
 
 /// Whether the effect that a subset lacks has a size that can be told from none.
 pub(crate) fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
+    if fall(&subset.fit, &set.fit) > SEEN {
+        return true;
+    }
     let kept = subset.key();
     let effects = set.effects().iter().zip(&set.fit.intervals);
     let mut lost = effects.filter(|(placed, _)| !kept.contains(&name(placed)));
@@ -324,6 +329,7 @@ fn judge_effect(
     let all = 1.0 + not_fitted as f64 * shares[0];
     let judged = Judged {
         placed: own.clone(),
+        scale: search.scale_at(&own.at),
         same,
         probability: shares[0] / all,
         swap_probabilities: shares[2..].iter().map(|share| share / all).collect(),
@@ -366,8 +372,8 @@ fn discount(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
 /// number of parameters, and by how far it takes the nominal ones.
 fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
     let variances = set.fit.variance.iter().zip(&rival.fit.variance);
-    let mut channels = variances.zip(search.problem.output_std());
-    if channels.all(|((own, its), std)| (own - its).abs().sqrt() < ACCURACY * std) {
+    let mut channels = variances.zip(&search.accuracy);
+    if channels.all(|((own, its), accuracy)| (own - its).abs().sqrt() < *accuracy) {
         let misfit = |set: &Hypothesis| set.fit.objective - pull(&set.fit.estimate);
         rival.evidence += misfit(rival) - misfit(set);
     }

@@ -233,6 +233,12 @@ pub enum Action {
 }
 
 impl Action {
+    /// Whether it adds a mass to the model, with a mode of its own.
+    #[must_use]
+    pub fn adds_mass(&self) -> bool {
+        matches!(self, Action::Mode { .. })
+    }
+
     /// Whether it moves a signal in steps, so that it has no derivative to go by.
     #[must_use]
     pub fn is_stepped(&self) -> bool {
@@ -285,9 +291,16 @@ pub trait Effect: Sync + Send {
         &[]
     }
 
-    /// Starting values that grow out of the fitted values of a special case ([`Effect::contains`]) or
-    /// of what it turns into ([`Effect::turns_into`]), by its kind; none where these values are out of
-    /// reach.
+    /// Kinds whose force on a mass has the same form in frequency, at the mass itself or at its spring to the
+    /// ground: where one fits, the other may fit as well from the values that move the mass alike.
+    fn resembles(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Starting values that grow out of the fitted values of a special case ([`Effect::contains`]), of what it
+    /// turns into ([`Effect::turns_into`]) or of what it resembles ([`Effect::resembles`]), by its kind; none
+    /// where these values are out of reach. The sizes are those of its own place, or of the spring to the
+    /// ground of what it resembles.
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         let _ = (kind, values, scale);
         vec![]
@@ -300,10 +313,10 @@ pub trait Effect: Sync + Send {
         true
     }
 
-    /// Why the intervals of fitted values look like those of something else that this law imitates; `None`
-    /// where nothing speaks against it.
-    fn doubt(&self, ci95: &[[f64; 2]]) -> Option<&'static str> {
-        let _ = ci95;
+    /// Why the intervals of fitted values look like those of something else that this law imitates, at a
+    /// place of these sizes; `None` where nothing speaks against it.
+    fn doubt(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+        let _ = (ci95, scale);
         None
     }
 

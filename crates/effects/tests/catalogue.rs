@@ -443,3 +443,46 @@ fn verify_sources_are_listed_on_the_page_of_references() {
     }
     assert!(sourced > 10, "only {sourced} kinds name a source");
 }
+
+/// A mass on a spring whose ground gives way has the modes of the mass on a softer spring with a hidden one.
+#[test]
+fn verify_what_resembles_each_other_has_the_same_modes() {
+    let text = "schema = \"simgap-model/1\"\nname = \"one mass\"\n[[mass]]\nname = \"table\"\nvalue = 3.0\n\
+                [[spring]]\nname = \"leg\"\nbetween = [\"table\", \"ground\"]\nstiffness = 4000.0\n\
+                [[output]]\nchannel = \"y\"\nkind = \"displacement\"\nat = \"table\"\n";
+    let model = Model::from_toml(text).unwrap();
+    let sizes = SiteScale {
+        stiffness_n_per_m: 4000.0,
+        ..scale()
+    };
+    let (mut hidden, mut support) = (model.clone(), model);
+    let of_support = [60_000.0, 1.7, 0.04, 0.0, 0.0];
+    let find = |kind: &str| simgap_effects::find(kind).unwrap();
+    let [mode, leg] = [find("attached_mode"), find("flexible_support")];
+    let of_mode = mode.grown_from(leg.kind(), &of_support, &sizes).concat();
+    let back = leg.grown_from(mode.kind(), &of_mode, &sizes).concat();
+    for (value, other) in of_support.iter().zip(&back) {
+        assert!((value - other).abs() <= 1e-12 * value.abs(), "{back:?}");
+    }
+    // What the hidden mass brings in stiffness, the spring loses.
+    let omega = std::f64::consts::TAU * of_mode[1];
+    hidden.springs[0].stiffness -= of_mode[0] * omega * omega;
+    let table = Location::Mass("table".into());
+    let to_ground = Location::Between(["table".into(), "ground".into()]);
+    for (effect, values, model, at) in [
+        (mode, &of_mode[..], &mut hidden, &table),
+        (leg, &of_support[..], &mut support, &to_ground),
+    ] {
+        let Action::Mode { change, .. } = effect.action(values) else {
+            panic!("{} adds a mass", effect.kind());
+        };
+        change(model, at);
+    }
+    let modes = |model: &Model| {
+        let modes = simgap_model::undamped_modes(&model.matrices().unwrap()).unwrap();
+        modes.natural_freq_hz
+    };
+    for (one, other) in modes(&hidden).iter().zip(modes(&support)) {
+        assert!((one - other).abs() < 1e-9 * other, "{one} {other}");
+    }
+}

@@ -45,7 +45,7 @@ pub struct Fit {
     pub variance: Vec<f64>,
     /// Intervals of the effects' parameters, effect by effect.
     pub intervals: Vec<Vec<Interval>>,
-    /// Information of the data on the values of hidden dynamics, each in units of its distance from where it
+    /// Information of the data on the values of hidden masses, each in units of its distance from where it
     /// does nothing: the eigenvalues.
     pub information: Vec<f64>,
     /// Discrepancies of each run and channel at the estimate.

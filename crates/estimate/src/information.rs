@@ -1,4 +1,4 @@
-//! What the data know of the parameters of hidden dynamics.
+//! What the data know of the parameters of hidden masses.
 //!
 //! ```text
 //! C_ij = (H⁻¹)_ij / (s_i s_j),   λ = 1 / eigenvalues of C                 (1)
@@ -10,15 +10,15 @@
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
-use simgap_effects::{Family, Parameter};
+use simgap_effects::Parameter;
 
 use crate::layout::Layout;
 use crate::normal::factorise;
 
-/// λ of (1), over the values of all hidden dynamics; infinite where H is singular.
+/// λ of (1), over the values of all hidden masses; infinite where H is singular.
 pub(crate) fn information(layout: &Layout, hessian: &Mat<f64>, theta: &[f64]) -> Vec<f64> {
     let hidden = layout.effect_entries();
-    let hidden = hidden.filter(|(_, placed, _)| placed.effect.family() == Family::Dynamics);
+    let hidden = hidden.filter(|(_, placed, _)| placed.action().adds_mass());
     let (entries, size): (Vec<usize>, Vec<f64>) = hidden
         .map(|(entry, placed, place)| {
             let parameter = &placed.effect.parameters()[place];

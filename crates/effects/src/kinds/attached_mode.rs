@@ -152,8 +152,22 @@ impl Effect for AttachedMode {
         &["mass_error"]
     }
 
-    /// A factor q on the host is a mass m (q − 1) that moves with it.
-    fn grown_from(&self, _kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+    fn resembles(&self) -> &'static [&'static str] {
+        &["flexible_support"]
+    }
+
+    /// A factor q on the host is a mass m (q − 1) that moves with it. A support of stiffness kₛ and mass mₛ behind
+    /// a spring k is a softer spring and a hidden mass: kₐ = k² / (k + kₛ), ω² = (k + kₛ) / mₛ.
+    fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        if kind == "flexible_support" {
+            let (own, both) = (scale.stiffness_n_per_m, scale.stiffness_n_per_m + values[0]);
+            let omega = (both / values[1]).sqrt();
+            let mass = own * own / both / (omega * omega);
+            let damping_ratio = values[2] * (values[0] / both).sqrt();
+            let start = vec![mass, omega / TAU, damping_ratio, 0.0, 0.0];
+            let is_finite = start.iter().all(|value| value.is_finite());
+            return if is_finite { vec![start] } else { vec![] };
+        }
         let added = (values[0] - 1.0) * scale.mass_kg;
         if !(added > 0.0 && added.is_finite()) {
             return vec![];

@@ -134,9 +134,30 @@ impl Effect for FlexibleSupport {
         &["stiffness_error", "damping_error"]
     }
 
+    fn resembles(&self) -> &'static [&'static str] {
+        &["attached_mode"]
+    }
+
     /// A massless support of stiffness k q/(1 − q) behind a spring and a damper is a factor q on the
-    /// spring and, well below where the damper is stiffer than the spring, q² on the damper.
+    /// spring and, well below where the damper is stiffer than the spring, q² on the damper. A hidden mass of
+    /// stiffness kₐ < k on the host is a support and a stiffer spring: kₛ = k² / kₐ − k, mₛ = (k + kₛ) / ω².
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        if kind == "attached_mode" {
+            let (own, omega) = (scale.stiffness_n_per_m, TAU * values[1]);
+            let both = own * own / (values[0] * omega * omega);
+            let stiffness = both - own;
+            if !(stiffness > 0.0 && both.is_finite()) {
+                return vec![];
+            }
+            let damping_ratio = values[2] * (both / stiffness).sqrt();
+            return vec![vec![
+                stiffness,
+                both / (omega * omega),
+                damping_ratio,
+                0.0,
+                0.0,
+            ]];
+        }
         let factor = match kind {
             "damping_error" => values[0].sqrt(),
             _ => values[0],

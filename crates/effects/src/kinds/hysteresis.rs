@@ -187,7 +187,7 @@ impl Effect for Hysteresis {
         }))
     }
 
-    fn doubt(&self, ci95: &[[f64; 2]]) -> Option<&'static str> {
+    fn doubt(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
         let &[_, _, loop_share, exponent, _] = ci95 else {
             return None;
         };

@@ -127,7 +127,7 @@ impl Effect for StribeckFriction {
         }))
     }
 
-    fn doubt(&self, ci95: &[[f64; 2]]) -> Option<&'static str> {
+    fn doubt(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
         let &[[low, high], [other_low, other_high], _] = ci95 else {
             return None;
         };
