@@ -369,11 +369,21 @@ fn discount(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
 }
 
 /// A rival that fits as well or as badly as the set but for what a simulation may be off is judged by its
-/// number of parameters, and by how far it takes the nominal ones.
+/// number of parameters, and by how far it takes the nominal ones. A nominal parameter in the place of a force is
+/// so judged as long as they differ by less than what counts as an effect.
 fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
+    let is_parameter = match (replacement(rival, set), replacement(set, rival)) {
+        (Some(old), Some(new)) => {
+            is_nominal(new) && !old.action().adds_mass() && same_place(&old.at, &new.at)
+        }
+        _ => false,
+    };
+    let least = if is_parameter { 0.5 * MOVES } else { 0.0 };
+    let std = search.problem.output_std();
+    let off = search.accuracy.iter().zip(std);
     let variances = set.fit.variance.iter().zip(&rival.fit.variance);
-    let mut channels = variances.zip(&search.accuracy);
-    if channels.all(|((own, its), accuracy)| (own - its).abs().sqrt() < *accuracy) {
+    let mut channels = variances.zip(off.map(|(accuracy, std)| accuracy.max(least * std)));
+    if channels.all(|((own, its), off)| (own - its).abs().sqrt() < off) {
         let misfit = |set: &Hypothesis| set.fit.objective - pull(&set.fit.estimate);
         rival.evidence += misfit(rival) - misfit(set);
     }
