@@ -1,6 +1,6 @@
 //! Single effects fitted from afar.
 //!
-//! Where no single effect, or none beside another, explains a gap, it may be that the right one was fitted from the wrong side of
+//! Where no single effect explains a gap, it may be that the right one was fitted from the wrong side of
 //! a ridge, or from a size at which it does something else. Effects of the machine are then simulated at
 //! many values, spread over two decades about their starting values, and fitted from the best of them.
 
@@ -28,7 +28,7 @@ const STEPS: usize = 30;
 const PRIMES: [usize; 6] = [2, 3, 5, 7, 11, 13];
 
 impl Search<'_> {
-    /// A set with every further effect of the machine, fitted from the best of many values. Best first.
+    /// Every single effect of the machine, fitted from the best of many values. Best first.
     pub(crate) fn fit_from_afar(
         &self,
         base: &Hypothesis,
@@ -37,7 +37,7 @@ impl Search<'_> {
         let curved = self
             .candidates
             .par_iter()
-            .filter(|(c, _)| is_curved(c.effect) && !base.rules_out(c));
+            .filter(|(c, _)| is_curved(c.effect));
         let scored = curved
             .map(|(candidate, scale)| {
                 let points = points(candidate, scale);

@@ -21,8 +21,6 @@ use crate::hypothesis::{
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
-/// Single effects that a second one is fitted beside from afar.
-const SURVIVORS_AFAR: usize = 2;
 /// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Steps of a rough fit, and of one of the search that is finished.
@@ -388,13 +386,6 @@ impl<'a> Search<'a> {
             let mut next: Vec<Hypothesis> = Vec::new();
             for survivor in front.iter().take(*survivors) {
                 next.extend(self.extend(survivor, FITTED[size + 1])?);
-            }
-            if size == 0 && !next.iter().any(|set| self.is_exhausted(set)) {
-                step("pairs of effects from afar");
-                for survivor in front.iter().take(SURVIVORS_AFAR) {
-                    let linear = linearise_at(self.problem, &survivor.fit, &self.weights)?;
-                    next.extend(self.fit_from_afar(survivor, &linear)?);
-                }
             }
             sort(&mut next);
             unique(&mut next);

@@ -92,6 +92,36 @@ fn verify_a_wrong_law_that_fits_is_told_as_such() {
     assert!(honest, "{verdict:?}");
 }
 
+/// A support that gives way is a softer spring and a weaker damper as long as its own mode is not excited.
+#[test]
+fn verify_a_support_is_not_taken_for_two_parameters() {
+    let values = [40_000.0, 0.9, 0.05, 0.0, 0.0];
+    let truth = [placed("flexible_support", ground(), &values)];
+    let outcome = diagnosed(&truth, &[]);
+    assert_eq!(named(&outcome), [("flexible_support".into(), ground())]);
+    let found = outcome.diagnosis.verdict.effects[0].parameters[0].value;
+    assert!((found / values[0] - 1.0).abs() < 0.2, "{found}");
+}
+
+/// What comes late on every channel by the same time was late before the sensors. Where nothing before them is
+/// looked for, it is not blamed on each of them.
+#[test]
+fn verify_what_is_common_to_all_channels_is_not_blamed_on_each() {
+    let truth = [placed(
+        "input_delay",
+        Location::Input("u".into()),
+        &[0.0047],
+    )];
+    let known = diagnosed(&truth, &[]);
+    assert_eq!(
+        named(&known),
+        [("input_delay".into(), Location::Input("u".into()))]
+    );
+    let outcome = diagnosed(&truth, &["input_delay", "input_lag"]);
+    let verdict = &outcome.diagnosis.verdict;
+    assert_eq!(verdict.status, Status::Unknown, "{verdict:?}");
+}
+
 #[test]
 fn verify_two_runs_are_the_same_to_the_last_digit() {
     let truth = [placed("backlash", ground(), &[4e-4])];
