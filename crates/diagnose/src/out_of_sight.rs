@@ -3,6 +3,7 @@
 //! A support that gives way is a softer spring below its own mode, an attached mass a heavier one. Where the
 //! answer names parameters, the data may not contradict such dynamics either.
 
+use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{Base, EstimateError, Start, score_outright};
 
@@ -32,21 +33,25 @@ impl Search<'_> {
             [limit] if is_nominal(limit) => Some(limit),
             _ => None,
         });
-        let mut starts: Vec<Start> = Vec::new();
-        for limit in limits {
-            let kind = limit.effect.kind();
-            for (candidate, scale) in &self.candidates {
-                let turns = candidate.effect.turns_into().contains(&kind);
-                if !turns || candidate.at != limit.at {
-                    continue;
-                }
+        let pairs: Vec<_> = limits
+            .flat_map(|limit| self.candidates.iter().map(move |known| (limit, known)))
+            .filter(|(limit, (candidate, _))| {
+                let turns = candidate.effect.turns_into();
+                candidate.at == limit.at && turns.contains(&limit.effect.kind())
+            })
+            .collect();
+        let starts = pairs
+            .into_par_iter()
+            .map(|(limit, (candidate, scale))| {
+                let kind = limit.effect.kind();
                 let shapes = candidate.effect.grown_from(kind, &limit.values, scale);
                 let best = score_outright(linear, candidate, &shapes).unwrap_or_default();
                 let best = best.into_iter().take(STARTS);
-                starts.extend(best.map(|score| add(&base.fit.estimate, score.start)));
-            }
-        }
-        self.fit_all(&starts, linear)
+                best.map(|score| add(&base.fit.estimate, score.start))
+                    .collect::<Vec<Start>>()
+            })
+            .collect::<Vec<_>>();
+        self.fit_all(&starts.concat(), linear)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Signs that a named effect only stands in for a law that the catalogue does not have.
 
-use simgap_effects::{Action, Family, Parameter, Placed};
+use simgap_effects::{Action, Family, Parameter, Placed, Sampled};
 use simgap_estimate::Interval;
 
 use crate::pipeline::Answer;
@@ -26,7 +26,7 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
     let mut doubts = Vec::new();
     if let Some(other) = company(answer, i) {
         doubts.push(format!(
-            "{} is named at the same place, and two laws together can imitate a third",
+            "{} is named at the same place, and two effects together can imitate a third",
             other.effect.kind()
         ));
     }
@@ -73,7 +73,7 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
 }
 
 /// Another effect at the place of the i-th that together with it may imitate a third: of the machine, or a
-/// parameter of it, where one of the two is a law; before the sampling of a channel.
+/// parameter of it, where one of the two is a law; or two filters of one channel.
 pub(crate) fn company(answer: &Answer, i: usize) -> Option<&Placed> {
     let own = &answer.judged[i].placed;
     let others = answer.judged.iter().enumerate().filter(|(j, _)| *j != i);
@@ -85,7 +85,20 @@ fn may_imitate(one: &Placed, other: &Placed) -> bool {
     let both = |is: fn(&Placed) -> bool| is(one) && is(other);
     let is_law = |placed: &Placed| placed.effect.family().is_law();
     both(|placed| placed.effect.family() != Family::Measurement) && (is_law(one) || is_law(other))
-        || both(|placed| matches!(placed.action(), Action::Output(_)))
+        || both(is_filter)
+}
+
+/// Whether an effect passes a channel on in proportion: a gain, a delay, a lag; what it adds would be seen on its
+/// own.
+fn is_filter(placed: &Placed) -> bool {
+    const SILENCE: [f64; 16] = [0.0; 16];
+    match placed.action() {
+        Action::Output(map) => {
+            let passed = map.apply(Sampled::from_start(&SILENCE, 1e-3));
+            passed.iter().all(|value| *value == 0.0)
+        }
+        _ => false,
+    }
 }
 
 /// Said of a nominal parameter that is off by the same factor as two others at least, or by its inverse: the
