@@ -437,3 +437,21 @@ fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Score> {
         start: placed.clone(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_mass_and_its_spring_to_the_ground_the_spring_has_the_sizes() {
+        let mass = |name: &str| Location::Mass(name.into());
+        let spring = |a: &str, b: &str| Location::Between([a.into(), b.into()]);
+        let leg = spring("table", GROUND);
+        assert_eq!(spring_to_ground(&mass("table"), &leg), Some(&leg));
+        assert_eq!(spring_to_ground(&leg, &mass("table")), Some(&leg));
+        assert_eq!(spring_to_ground(&mass("arm"), &leg), None);
+        let between = spring("table", "arm");
+        assert_eq!(spring_to_ground(&mass("table"), &between), None);
+        assert_eq!(spring_to_ground(&leg, &leg), None);
+    }
+}

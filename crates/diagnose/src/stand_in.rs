@@ -130,3 +130,31 @@ fn is_unseen(interval: &Interval) -> bool {
     let [low, high] = interval.ci95;
     !(low.is_finite() && high.is_finite()) || low <= 0.0 && high > 0.0 || high / low > UNSEEN
 }
+
+#[cfg(test)]
+mod tests {
+    use simgap_effects::{SiteScale, find};
+    use simgap_model::Location;
+
+    use super::*;
+
+    #[test]
+    fn filters_pass_a_channel_on_in_proportion() {
+        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
+        let filters = |kind: &str| {
+            let values = find(kind).map(|effect| (effect, effect.starts(&scale)));
+            let mut placed = values.into_iter().flat_map(|(effect, starts)| {
+                let at = Location::Channel("y".into());
+                let placed = move |values| Placed::new(effect, at.clone(), values);
+                starts.into_iter().map(placed)
+            });
+            placed.all(|placed| is_filter(&placed))
+        };
+        for kind in ["sensor_gain", "sensor_delay", "sensor_lag"] {
+            assert!(filters(kind), "{kind}");
+        }
+        for kind in ["sensor_bias", "sensor_drift", "tone_pickup", "clipping"] {
+            assert!(!filters(kind), "{kind}");
+        }
+    }
+}
