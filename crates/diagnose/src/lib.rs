@@ -78,6 +78,7 @@ mod search;
 mod stand_in;
 mod stretches;
 mod structure;
+mod unexplained;
 mod verdict;
 
 pub use diagnosis::*;

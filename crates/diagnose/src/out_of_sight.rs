@@ -6,9 +6,10 @@
 use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{Base, EstimateError, Start, score_outright};
+use simgap_model::{GROUND, Location};
 
 use crate::evidence::{is_nominal, probabilities};
-use crate::hypothesis::{Hypothesis, add, name, sort, unique};
+use crate::hypothesis::{Hypothesis, add, name, remove, sort, unique};
 use crate::search::Search;
 use crate::verdict::{INDISTINGUISHABLE, Judged, Swap, identified, replacement};
 
@@ -117,4 +118,46 @@ pub(crate) fn add_rivals_out_of_sight(
         judged.probability *= shares[0];
     }
     Ok(())
+}
+
+/// A start without the other parameters that an effect of it turns into: it takes the place of all.
+pub(crate) fn without_limits(mut start: Start, dynamics: &Placed) -> Start {
+    let is_limit = |placed: &Placed| {
+        let turns = dynamics.effect.turns_into().contains(&placed.effect.kind());
+        turns && placed.at == dynamics.at
+    };
+    while let Some(i) = start.effects.iter().position(is_limit) {
+        start = remove(&start, i);
+    }
+    start
+}
+
+/// The spring, of a mass and its spring to the ground.
+pub(crate) fn spring_to_ground<'a>(one: &'a Location, other: &'a Location) -> Option<&'a Location> {
+    match (one, other) {
+        (Location::Mass(mass), spring @ Location::Between(pair))
+        | (spring @ Location::Between(pair), Location::Mass(mass)) => {
+            let joins = pair.contains(mass) && pair.iter().any(|node| node == GROUND);
+            joins.then_some(spring)
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_mass_and_its_spring_to_the_ground_the_spring_has_the_sizes() {
+        let mass = |name: &str| Location::Mass(name.into());
+        let spring = |a: &str, b: &str| Location::Between([a.into(), b.into()]);
+        let leg = spring("table", GROUND);
+        assert_eq!(spring_to_ground(&mass("table"), &leg), Some(&leg));
+        assert_eq!(spring_to_ground(&leg, &mass("table")), Some(&leg));
+        assert_eq!(spring_to_ground(&mass("arm"), &leg), None);
+        let between = spring("table", "arm");
+        assert_eq!(spring_to_ground(&mass("table"), &between), None);
+        assert_eq!(spring_to_ground(&leg, &leg), None);
+    }
 }

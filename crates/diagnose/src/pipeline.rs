@@ -18,7 +18,7 @@ use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
 use crate::verdict::{Judged, SEEN, is_told_from_none, judge, prune, simplest};
-use crate::{DiagnoseError, Gap, answer, locate, stretches};
+use crate::{DiagnoseError, Gap, answer, locate, stretches, unexplained};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
 const RECALIBRATION_PRIOR: f64 = 0.5;
@@ -143,9 +143,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let harms = |gap: &Gap| gap.corrected > HARMS * gap.recalibrated;
     // A law that fails on the check records, or another motion of the same law?
     let fails = |answer: &Answer| {
-        harms(&gap) || answer::leaves_much(&gap) || answer::is_poor_stand_in(answer, &gap)
+        harms(&gap) || unexplained::leaves_much(&gap) || unexplained::is_poor_stand_in(answer, &gap)
     };
-    let anew = if answer::has_force(&answer) && fails(&answer) {
+    let anew = if unexplained::has_force(&answer) && fails(&answer) {
         let known = &recalibrated.estimate.nominal;
         stretches::gap_started_anew(&check, known, &placed, &plain).ok()
     } else {

@@ -11,13 +11,12 @@ use simgap_effects::{
 use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, Problem, Score, Start, Weights, fit, linearise_at, score,
 };
-use simgap_model::{GROUND, Location};
+use simgap_model::Location;
 
 use crate::accuracy::accuracy;
 use crate::evidence::{effective_samples, evidence, freedom};
-use crate::hypothesis::{
-    Hypothesis, add, name, pull, pull_of, remove, replace, same, sort, unique,
-};
+use crate::hypothesis::{Hypothesis, add, name, pull, pull_of, replace, same, sort, unique};
+use crate::out_of_sight::{spring_to_ground, without_limits};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -398,30 +397,6 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A start without the other parameters that an effect of it turns into: it takes the place of all.
-fn without_limits(mut start: Start, dynamics: &Placed) -> Start {
-    let is_limit = |placed: &Placed| {
-        let turns = dynamics.effect.turns_into().contains(&placed.effect.kind());
-        turns && placed.at == dynamics.at
-    };
-    while let Some(i) = start.effects.iter().position(is_limit) {
-        start = remove(&start, i);
-    }
-    start
-}
-
-/// The spring, of a mass and its spring to the ground.
-fn spring_to_ground<'a>(one: &'a Location, other: &'a Location) -> Option<&'a Location> {
-    match (one, other) {
-        (Location::Mass(mass), spring @ Location::Between(pair))
-        | (spring @ Location::Between(pair), Location::Mass(mass)) => {
-            let joins = pair.contains(mass) && pair.iter().any(|node| node == GROUND);
-            joins.then_some(spring)
-        }
-        _ => None,
-    }
-}
-
 /// Score of a nominal parameter that the fit already adjusts under its prior: freed, it gains what
 /// the prior holds back, and about as much again in what it can then explain.
 fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Score> {
@@ -436,22 +411,4 @@ fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Score> {
         share: 0.0,
         start: placed.clone(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn of_a_mass_and_its_spring_to_the_ground_the_spring_has_the_sizes() {
-        let mass = |name: &str| Location::Mass(name.into());
-        let spring = |a: &str, b: &str| Location::Between([a.into(), b.into()]);
-        let leg = spring("table", GROUND);
-        assert_eq!(spring_to_ground(&mass("table"), &leg), Some(&leg));
-        assert_eq!(spring_to_ground(&leg, &mass("table")), Some(&leg));
-        assert_eq!(spring_to_ground(&mass("arm"), &leg), None);
-        let between = spring("table", "arm");
-        assert_eq!(spring_to_ground(&mass("table"), &between), None);
-        assert_eq!(spring_to_ground(&leg, &leg), None);
-    }
 }

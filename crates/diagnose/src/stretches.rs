@@ -9,9 +9,9 @@ use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Problem, Weights};
 use simgap_simulate::Run;
 
-use crate::answer::NOTHING_BUT_NOISE;
 use crate::diagnosis::Gap;
 use crate::gap::{gap, predict};
+use crate::unexplained::NOTHING_BUT_NOISE;
 
 /// Stretches that a check record is cut into at the most, and samples of each at the least.
 const MOST_STRETCHES: usize = 20;

@@ -1,0 +1,192 @@
+//! When an answer is `unknown`: what is left stands out of the noise and is not explained, or what is named
+//! looks like the work of something else.
+
+use simgap_effects::{Action, Family, Placed};
+use simgap_estimate::{Interval, Problem};
+
+use crate::diagnosis::{Gap, Status};
+use crate::gap::{closed, total};
+use crate::pipeline::Answer;
+use crate::stand_in::{company, doubts};
+use crate::verdict::{
+    CLOSES, CLOSES_BEYOND_RECALIBRATION, IMITATION_LEAVES, IMITATION_STANDS_OUT, STANDS_OUT,
+};
+
+/// A corrected gap below this share of the motion is good enough for any model.
+const TRIFLE: f64 = 0.01;
+/// Share of what a set leaves beyond the noise that a law of any shape at the place of a named effect
+/// may explain: more, and the law of this place is not the named one.
+const ANOTHER_LAW: f64 = 0.3;
+/// Share of the gap on the check records that a name which may be a stand-in may leave: with less, it
+/// serves as well as the law it stands in for.
+const STAND_IN_LEAVES: f64 = 0.03;
+/// Values within this share of each other are the same.
+const ALIKE: f64 = 0.01;
+/// Effects that close less than [`CLOSES`] of the gap on the check records, and less than this of what
+/// parameters alone leave, are of no use.
+const OF_SOME_USE: f64 = 0.3;
+/// A name that may be a stand-in and leaves more than [`STAND_IN_LEAVES`] must not stand out of the noise by
+/// more than this.
+const STAND_IN_STANDS_OUT: f64 = 1.2;
+/// Two laws at one place that are there leave the noise of the check records, but for this factor.
+const TWO_STAND_OUT: f64 = 1.03;
+/// What leaves less than this multiple of the noise leaves nothing.
+pub(crate) const NOTHING_BUT_NOISE: f64 = 1.1;
+/// The same where samples are lost or stored in steps: no model says which, and the noise is known less well.
+const NOTHING_BUT_EVENTS: f64 = 1.3;
+
+/// Whether structure well above the noise is left that the set does not explain.
+pub(crate) fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
+    if imitation(answer, gap)
+        || another_law(answer, gap)
+        || is_poor_stand_in(answer, gap) && !answer.follows_anew
+        || is_of_no_use(answer, gap, status)
+        || on_every_channel(train, answer)
+    {
+        return true;
+    }
+    // What remains must stand out of the noise, and not be a trifle of the motion itself.
+    if gap.corrected < STANDS_OUT * gap.noise_floor || gap.corrected < TRIFLE {
+        return false;
+    }
+    if status == Status::None {
+        return true;
+    }
+    let std = train.output_std();
+    let size = |variance: &[f64]| -> f64 {
+        let each: Vec<f64> = variance
+            .iter()
+            .zip(&std)
+            .map(|(v, s)| v.sqrt() / s)
+            .collect();
+        total(&each)
+    };
+    let floor = gap.noise_floor;
+    let learnt = closed(
+        size(&answer.nominal.variance),
+        size(&answer.estimate.variance),
+        floor,
+    );
+    learnt.max(gap.closed) < CLOSES
+        || (status == Status::Parameters && gap.closed < CLOSES_BEYOND_RECALIBRATION)
+        || (status == Status::Effect
+            && leaves_much(gap)
+            && !explains_all_it_saw(answer)
+            && !answer.follows_anew)
+}
+
+/// Whether what is left of the check records stands out of the noise, and less of what recalibration leaves
+/// is closed than named effects must close.
+pub(crate) fn leaves_much(gap: &Gap) -> bool {
+    gap.corrected >= STANDS_OUT * gap.noise_floor
+        && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < CLOSES_BEYOND_RECALIBRATION
+}
+
+/// Whether a set with one force at the most, and no dynamics, leaves nothing but noise of the records it was
+/// fitted to. Where it fails on the check records then, their motion hangs on differences that no estimate
+/// resolves: play, sticking.
+fn explains_all_it_saw(answer: &Answer) -> bool {
+    let mut named = answer.judged.iter().map(|judged| &judged.placed);
+    let has_dynamics = named
+        .clone()
+        .any(|placed| placed.effect.family() == Family::Dynamics);
+    let most = if named.any(|placed| matches!(placed.action(), Action::Sampling(_))) {
+        NOTHING_BUT_EVENTS
+    } else {
+        NOTHING_BUT_NOISE
+    };
+    !has_dynamics && laws(answer) <= 1 && answer.remainder.over_noise < most
+}
+
+/// Named forces and dynamics.
+pub(crate) fn laws(answer: &Answer) -> usize {
+    let named = answer.judged.iter();
+    named
+        .filter(|judged| judged.placed.effect.family().is_law())
+        .count()
+}
+
+/// Whether a force is named: only with one may motions that begin alike part.
+pub(crate) fn has_force(answer: &Answer) -> bool {
+    let mut named = answer.judged.iter();
+    named.any(|judged| judged.placed.effect.family() == Family::Force)
+}
+
+/// Whether several forces and dynamics together leave more than true ones would: a law that the
+/// catalogue lacks is imitated by two or three that it has.
+fn imitation(answer: &Answer, gap: &Gap) -> bool {
+    let count = laws(answer);
+    let left = 1.0 - closed(gap.recalibrated, gap.corrected, gap.noise_floor);
+    let stands_out = gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor;
+    let several = count >= 2 && stands_out && left > IMITATION_LEAVES[usize::from(count > 2)];
+    several || two_for_one(answer, gap)
+}
+
+/// Whether two laws at one place leave more than one law that stands in for a foreign one may.
+fn two_for_one(answer: &Answer, gap: &Gap) -> bool {
+    let mut each = 0..answer.judged.len();
+    each.any(|i| company(answer, i).is_some())
+        && gap.closed < 1.0 - STAND_IN_LEAVES
+        && gap.corrected > TWO_STAND_OUT * gap.noise_floor
+}
+
+/// Whether a law of another shape than the named one acts at its place.
+fn another_law(answer: &Answer, gap: &Gap) -> bool {
+    let Some(law) = &answer.remainder.law else {
+        return false;
+    };
+    let mut named = answer.judged.iter().map(|judged| &judged.placed);
+    let is_here =
+        |placed: &Placed| placed.at == law.at && placed.effect.family() == law.effect.family();
+    // Parameters alone leave room for a law at any place.
+    let mut laws = named
+        .clone()
+        .filter(|placed| placed.effect.family() != Family::NominalParameter);
+    law.share > ANOTHER_LAW
+        && gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor
+        && gap.closed < 1.0 - STAND_IN_LEAVES
+        && gap.corrected > TRIFLE
+        && (named.any(is_here) || laws.next().is_none())
+}
+
+/// Whether a name that may be a stand-in leaves more than a stand-in may.
+pub(crate) fn is_poor_stand_in(answer: &Answer, gap: &Gap) -> bool {
+    gap.closed < 1.0 - STAND_IN_LEAVES
+        && gap.corrected > STAND_IN_STANDS_OUT * gap.noise_floor
+        && (0..answer.judged.len()).any(|i| !doubts(answer, i).is_empty())
+}
+
+/// Whether named effects do hardly better on the check records than parameters alone.
+fn is_of_no_use(answer: &Answer, gap: &Gap, status: Status) -> bool {
+    status == Status::Effect
+        && gap.closed < CLOSES
+        && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < OF_SOME_USE
+        && !explains_all_it_saw(answer)
+        && !answer.follows_anew
+}
+
+/// Whether the same effect of the measurement chain, with the same values, is named on every one of several
+/// channels: its cause is common to them, and lies before the sensors.
+fn on_every_channel(train: &Problem, answer: &Answer) -> bool {
+    let channels = train.model.outputs.len();
+    let of_kind = |kind: &str| {
+        let all = answer.judged.iter().zip(&answer.estimate.intervals);
+        let same = all.filter(|(judged, _)| judged.placed.effect.kind() == kind);
+        same.map(|(_, intervals)| intervals).collect::<Vec<_>>()
+    };
+    let agree = |one: &Vec<Interval>, other: &Vec<Interval>| {
+        let mut both = one.iter().zip(other);
+        both.all(|(a, b)| {
+            let apart = (a.value - b.value).abs();
+            apart <= ALIKE * a.value.abs() || a.ci95[0] <= b.ci95[1] && b.ci95[0] <= a.ci95[1]
+        })
+    };
+    let mut smooth = answer.judged.iter().map(|judged| &judged.placed);
+    channels > 1
+        && smooth.any(|placed| {
+            let on = of_kind(placed.effect.kind());
+            matches!(placed.action(), Action::Output(_))
+                && on.len() == channels
+                && on.windows(2).all(|pair| agree(pair[0], pair[1]))
+        })
+}
