@@ -25,11 +25,8 @@ pub(crate) fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, Estimat
         .map(|(r, run)| {
             let simulator = problem.simulator(&fit.estimate.nominal, r)?;
             let initial = &fit.estimate.initial[r];
-            let both = [
-                simulator.predict(run, initial)?,
-                simulator.predict(&thinned(run), initial)?,
-            ];
-            let [fine, coarse] = both;
+            let fine = simulator.predict(run, initial)?;
+            let coarse = simulator.predict(&thinned(run), initial)?;
             let squares = fine.iter().zip(&coarse).map(|(fine, coarse)| {
                 let apart = fine.iter().zip(coarse).map(|(a, b)| (a - b).powi(2));
                 apart.sum::<f64>()

@@ -1,7 +1,7 @@
 //! The answer in words and numbers.
 
 use rayon::prelude::*;
-use simgap_effects::{Family, Placed, find, same_place};
+use simgap_effects::{Placed, find, same_place};
 use simgap_estimate::{EstimateError, Problem, Weights};
 use simgap_model::Location;
 
@@ -29,14 +29,10 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
     let effects: Vec<NamedEffect> = (0..answer.judged.len()).map(|i| named(answer, i)).collect();
     let mut status = if effects.is_empty() {
         Status::None
-    } else if answer
-        .judged
-        .iter()
-        .all(|judged| judged.placed.effect.family() == Family::NominalParameter)
-    {
-        Status::Parameters
-    } else {
+    } else if answer.names_more_than_parameters() {
         Status::Effect
+    } else {
+        Status::Parameters
     };
     let mut description = Vec::new();
     if unexplained(train, answer, gap, status) {

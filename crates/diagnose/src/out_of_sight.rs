@@ -4,7 +4,7 @@
 //! answer names parameters, the data may not contradict such dynamics either.
 
 use rayon::prelude::*;
-use simgap_effects::Placed;
+use simgap_effects::{Effect, Placed};
 use simgap_estimate::{Base, EstimateError, Start, score_outright};
 use simgap_model::{GROUND, Location};
 
@@ -37,8 +37,7 @@ impl Search<'_> {
         let pairs: Vec<_> = limits
             .flat_map(|limit| self.candidates.iter().map(move |known| (limit, known)))
             .filter(|(limit, (candidate, _))| {
-                let turns = candidate.effect.turns_into();
-                candidate.at == limit.at && turns.contains(&limit.effect.kind())
+                turns_into((candidate.effect, &candidate.at), limit).is_some()
             })
             .collect();
         let starts = pairs
@@ -57,9 +56,12 @@ impl Search<'_> {
 }
 
 /// The kind of an effect that dynamics at its place turn into where their own mode is out of sight.
-pub(crate) fn turns_into(dynamics: &Placed, limit: &Placed) -> Option<&'static str> {
+pub(crate) fn turns_into(
+    (dynamics, at): (&dyn Effect, &Location),
+    limit: &Placed,
+) -> Option<&'static str> {
     let kind = limit.effect.kind();
-    let turns = dynamics.at == limit.at && dynamics.effect.turns_into().contains(&kind);
+    let turns = *at == limit.at && dynamics.turns_into().contains(&kind);
     turns.then_some(kind)
 }
 
@@ -111,7 +113,9 @@ pub(crate) fn add_rivals_out_of_sight(
                 placed: placed.clone(),
                 evidence: set.evidence + rival.evidence - settled.evidence,
                 misfit: rival.fit.objective - settled.fit.objective,
-                turns_into: limits.iter().find_map(|limit| turns_into(placed, limit)),
+                turns_into: limits
+                    .iter()
+                    .find_map(|limit| turns_into((placed.effect, &placed.at), limit)),
                 estimate: rival.fit.estimate.clone(),
             });
         }
@@ -122,10 +126,7 @@ pub(crate) fn add_rivals_out_of_sight(
 
 /// A start without the other parameters that an effect of it turns into: it takes the place of all.
 pub(crate) fn without_limits(mut start: Start, dynamics: &Placed) -> Start {
-    let is_limit = |placed: &Placed| {
-        let turns = dynamics.effect.turns_into().contains(&placed.effect.kind());
-        turns && placed.at == dynamics.at
-    };
+    let is_limit = |placed: &Placed| turns_into((dynamics.effect, &dynamics.at), placed).is_some();
     while let Some(i) = start.effects.iter().position(is_limit) {
         start = remove(&start, i);
     }

@@ -1,7 +1,7 @@
 //! The path from records to an answer.
 
 use rayon::prelude::*;
-use simgap_effects::{Family, Placed, catalogue};
+use simgap_effects::{Placed, catalogue};
 use simgap_estimate::{Fit, Problem, Start, Weights, fit, fit_initial_states};
 use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
@@ -9,7 +9,7 @@ use simgap_simulate::substeps_for;
 
 use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
-use crate::evidence::independence;
+use crate::evidence::{independence, is_nominal};
 use crate::gap::{Prediction, gap, predict};
 use crate::hypothesis::{Hypothesis, name, remove, sort};
 use crate::locate::Located;
@@ -88,9 +88,13 @@ impl Answer {
         all.cloned().collect()
     }
 
-    fn names_more_than_parameters(&self) -> bool {
-        let mut named = self.judged.iter().map(|judged| &judged.placed);
-        named.any(|placed| placed.effect.family() != Family::NominalParameter)
+    /// The effects that are named.
+    pub(crate) fn named(&self) -> impl Iterator<Item = &Placed> {
+        self.judged.iter().map(|judged| &judged.placed)
+    }
+
+    pub(crate) fn names_more_than_parameters(&self) -> bool {
+        !self.named().all(is_nominal)
     }
 }
 
@@ -385,7 +389,7 @@ fn search(
 fn first_unseen(estimate: &Fit, judged: &[Judged]) -> Option<usize> {
     let mut named = judged.iter().zip(&estimate.intervals);
     named.position(|(judged, intervals)| {
-        judged.placed.effect.family() != Family::NominalParameter
+        !is_nominal(&judged.placed)
             && judged.relevance <= SEEN
             && !is_told_from_none(&judged.placed, intervals)
     })

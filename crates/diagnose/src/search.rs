@@ -370,8 +370,6 @@ impl<'a> Search<'a> {
         if !pool.iter().any(|set| self.is_exhausted(set)) {
             step("single effects from afar");
             pool.extend(self.fit_from_afar(base, &linear)?);
-            sort(&mut pool);
-            unique(&mut pool);
         }
         pool.extend(self.fit_out_of_sight(base, &pool, &linear)?);
         sort(&mut pool);

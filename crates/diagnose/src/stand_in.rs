@@ -3,6 +3,7 @@
 use simgap_effects::{Action, Family, Parameter, Placed, Sampled};
 use simgap_estimate::Interval;
 
+use crate::evidence::is_nominal;
 use crate::pipeline::Answer;
 
 /// A value this near to the end of its range, relative to it, is at the end.
@@ -19,7 +20,7 @@ const MISFITS: f64 = 0.3;
 pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
     let judged = &answer.judged[i];
     let placed = &judged.placed;
-    if placed.effect.family() == Family::NominalParameter {
+    if is_nominal(placed) {
         let all = same_factor(answer, i);
         return all.into_iter().map(str::to_owned).collect();
     }
@@ -76,9 +77,9 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
 /// parameter of it, where one of the two is a law; or two filters of one channel.
 pub(crate) fn company(answer: &Answer, i: usize) -> Option<&Placed> {
     let own = &answer.judged[i].placed;
-    let others = answer.judged.iter().enumerate().filter(|(j, _)| *j != i);
-    let mut others = others.map(|(_, judged)| &judged.placed);
-    others.find(|other| other.at == own.at && may_imitate(own, other))
+    let mut others = answer.named().enumerate().filter(|(j, _)| *j != i);
+    let other = others.find(|(_, other)| other.at == own.at && may_imitate(own, other));
+    other.map(|(_, other)| other)
 }
 
 fn may_imitate(one: &Placed, other: &Placed) -> bool {
@@ -105,15 +106,11 @@ fn is_filter(placed: &Placed) -> bool {
 /// equations of motion may be multiplied by any number.
 fn same_factor(answer: &Answer, i: usize) -> Option<&'static str> {
     let factor = |placed: &Placed| {
-        let is_factor = placed.effect.family() == Family::NominalParameter;
-        let value = placed.values.first().filter(|_| is_factor)?;
-        (*value > 0.0).then(|| value.ln().abs())
+        let value = *placed.values.first()?;
+        (is_nominal(placed) && value > 0.0).then(|| value.ln().abs())
     };
     let own = factor(&answer.judged[i].placed)?;
-    let all = answer
-        .judged
-        .iter()
-        .filter_map(|judged| factor(&judged.placed));
+    let all = answer.named().filter_map(factor);
     let alike = all.filter(|other| (other - own).abs() < SAME_FACTOR * own.max(*other));
     (alike.count() >= 3).then_some(
         "three parameters are off by the same factor: one that is not among them would do the same",

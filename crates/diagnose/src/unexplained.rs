@@ -86,30 +86,30 @@ pub(crate) fn leaves_much(gap: &Gap) -> bool {
 /// fitted to. Where it fails on the check records then, their motion hangs on differences that no estimate
 /// resolves: play, sticking.
 fn explains_all_it_saw(answer: &Answer) -> bool {
-    let mut named = answer.judged.iter().map(|judged| &judged.placed);
-    let has_dynamics = named
-        .clone()
-        .any(|placed| placed.effect.family() == Family::Dynamics);
-    let most = if named.any(|placed| matches!(placed.action(), Action::Sampling(_))) {
+    let is_sampling = |placed: &Placed| matches!(placed.action(), Action::Sampling(_));
+    let most = if answer.named().any(is_sampling) {
         NOTHING_BUT_EVENTS
     } else {
         NOTHING_BUT_NOISE
     };
-    !has_dynamics && laws(answer) <= 1 && answer.remainder.over_noise < most
+    !names(answer, Family::Dynamics) && laws(answer) <= 1 && answer.remainder.over_noise < most
 }
 
 /// Named forces and dynamics.
-pub(crate) fn laws(answer: &Answer) -> usize {
-    let named = answer.judged.iter();
-    named
-        .filter(|judged| judged.placed.effect.family().is_law())
+fn laws(answer: &Answer) -> usize {
+    let laws = answer.named();
+    laws.filter(|placed| placed.effect.family().is_law())
         .count()
 }
 
 /// Whether a force is named: only with one may motions that begin alike part.
 pub(crate) fn has_force(answer: &Answer) -> bool {
-    let mut named = answer.judged.iter();
-    named.any(|judged| judged.placed.effect.family() == Family::Force)
+    names(answer, Family::Force)
+}
+
+fn names(answer: &Answer, family: Family) -> bool {
+    let mut named = answer.named();
+    named.any(|placed| placed.effect.family() == family)
 }
 
 /// Whether several forces and dynamics together leave more than true ones would: a law that the
@@ -122,7 +122,7 @@ fn imitation(answer: &Answer, gap: &Gap) -> bool {
     several || two_for_one(answer, gap)
 }
 
-/// Whether two laws at one place leave more than one law that stands in for a foreign one may.
+/// Whether two laws at one place, or two filters of one channel, leave more than one law that stands in for a foreign one may.
 fn two_for_one(answer: &Answer, gap: &Gap) -> bool {
     let mut each = 0..answer.judged.len();
     each.any(|i| company(answer, i).is_some())
@@ -135,18 +135,14 @@ fn another_law(answer: &Answer, gap: &Gap) -> bool {
     let Some(law) = &answer.remainder.law else {
         return false;
     };
-    let mut named = answer.judged.iter().map(|judged| &judged.placed);
     let is_here =
         |placed: &Placed| placed.at == law.at && placed.effect.family() == law.effect.family();
-    // Parameters alone leave room for a law at any place.
-    let mut laws = named
-        .clone()
-        .filter(|placed| placed.effect.family() != Family::NominalParameter);
     law.share > ANOTHER_LAW
         && gap.corrected > IMITATION_STANDS_OUT * gap.noise_floor
         && gap.closed < 1.0 - STAND_IN_LEAVES
         && gap.corrected > TRIFLE
-        && (named.any(is_here) || laws.next().is_none())
+        // Parameters alone leave room for a law at any place.
+        && (answer.named().any(is_here) || !answer.names_more_than_parameters())
 }
 
 /// Whether a name that may be a stand-in leaves more than a stand-in may.
@@ -174,19 +170,21 @@ fn on_every_channel(train: &Problem, answer: &Answer) -> bool {
         let same = all.filter(|(judged, _)| judged.placed.effect.kind() == kind);
         same.map(|(_, intervals)| intervals).collect::<Vec<_>>()
     };
-    let agree = |one: &Vec<Interval>, other: &Vec<Interval>| {
-        let mut both = one.iter().zip(other);
-        both.all(|(a, b)| {
-            let apart = (a.value - b.value).abs();
-            apart <= ALIKE * a.value.abs() || a.ci95[0] <= b.ci95[1] && b.ci95[0] <= a.ci95[1]
-        })
-    };
-    let mut smooth = answer.judged.iter().map(|judged| &judged.placed);
+    let mut smooth = answer
+        .named()
+        .filter(|placed| matches!(placed.action(), Action::Output(_)));
     channels > 1
         && smooth.any(|placed| {
             let on = of_kind(placed.effect.kind());
-            matches!(placed.action(), Action::Output(_))
-                && on.len() == channels
-                && on.windows(2).all(|pair| agree(pair[0], pair[1]))
+            on.len() == channels && on.windows(2).all(|pair| agree(pair[0], pair[1]))
         })
+}
+
+/// Whether the values of two effects of a kind are the same, or may be.
+fn agree(one: &[Interval], other: &[Interval]) -> bool {
+    let mut both = one.iter().zip(other);
+    both.all(|(a, b)| {
+        let apart = (a.value - b.value).abs();
+        apart <= ALIKE * a.value.abs() || a.ci95[0] <= b.ci95[1] && b.ci95[0] <= a.ci95[1]
+    })
 }

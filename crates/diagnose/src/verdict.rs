@@ -315,7 +315,7 @@ fn judge_effect(
                 evidence: rival.evidence,
                 misfit: rival.fit.objective - set.fit.objective,
                 estimate: rival.fit.estimate.clone(),
-                turns_into: turns_into(placed, own),
+                turns_into: turns_into((placed.effect, &placed.at), own),
             }
         })
         .collect();
