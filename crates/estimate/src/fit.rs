@@ -19,9 +19,9 @@ use simgap_simulate::LANES;
 use crate::information::information;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{
-    Linearised, Signals, discrepancies, discrepancies_of, linearise, reach, refresh,
+    Column, Linearised, Probe, Signals, complete, discrepancies_of, probe, reach,
 };
-use crate::normal::{damped_step, normal_equations, variances};
+use crate::normal::{damped_step, dot, normal_equations, variances};
 use crate::reach::Reach;
 use crate::{EstimateError, Problem, Start, Weights};
 
@@ -77,7 +77,7 @@ pub(crate) fn fit_with(
     start: &Start,
     weights: &Weights,
     shared_held: bool,
-    known: impl Fn(&Layout, usize, usize) -> Option<Signals>,
+    known: impl Fn(&Layout, usize, usize) -> Option<Column>,
 ) -> Result<Fit, EstimateError> {
     let freedom = Freedom {
         nominal_prior: weights.nominal_prior,
@@ -87,18 +87,23 @@ pub(crate) fn fit_with(
     let merit = Merit::new(problem, weights);
     let mut theta = layout.pack(start);
     layout.make_physical(&mut theta);
-    let point = |theta: &[f64]| -> Result<Linearised, EstimateError> {
-        let discrepancy = discrepancies(problem, &layout, theta)?;
-        Ok(Linearised {
-            discrepancy,
-            columns: vec![],
+    let known: Vec<Vec<Option<Column>>> = (0..problem.runs.len())
+        .map(|run| {
+            let places = 0..layout.entries(run).count();
+            places.map(|place| known(&layout, run, place)).collect()
         })
-    };
-    let first = point(&theta)?;
+        .collect();
+    let unknown = |run: usize, place: usize| known[run][place].is_none();
+    let first = probe(problem, &layout, &theta, unknown)?;
     let (mut objective, _) = merit.of(&layout, &theta, &first.discrepancy);
-    let mut at = refresh(problem, &layout, &theta, first, |run, place| {
-        known(&layout, run, place)
+    let mut at = complete(problem, &layout, &theta, first, |run, place| {
+        known[run][place].clone()
     })?;
+    let fresh = |at: Linearised, theta: &[f64]| {
+        // Those of the effects belong to their point always.
+        let known = Probe::of_linearised(at, |place| !layout.is_nuisance(place));
+        complete(problem, &layout, theta, known, |_, _| None)
+    };
     // Whether every sensitivity belongs to this point.
     let mut exact = !weights.keep_nuisance;
     // Objective where the kept sensitivities were taken.
@@ -111,29 +116,26 @@ pub(crate) fn fit_with(
             layout: &layout,
             merit: &merit,
         };
-        let Some(next) = search.step(&theta, objective, &at, &mut damping) else {
+        let along = |_: usize, place: usize| !(weights.keep_nuisance && layout.is_nuisance(place));
+        let Some(next) = search.step(&theta, objective, &at, &mut damping, along) else {
             if exact {
                 break;
             }
             // The kept sensitivities mislead: one more try with all of them fresh.
-            at = linearise(problem, &layout, &theta)?;
+            at = fresh(at, &theta)?;
             (exact, damping, taken_at) = (true, FIRST_DAMPING, objective);
             continue;
         };
         let gain = objective - next.objective;
         (theta, objective) = (next.theta, next.objective);
-        let here = Linearised {
-            discrepancy: next.discrepancy,
-            columns: vec![],
-        };
         let is_far = taken_at - objective > merit.of_a_factor(STALE);
         if is_far {
             taken_at = objective;
         }
         let keep = weights.keep_nuisance && !is_far;
-        let mut kept = at.columns;
-        at = refresh(problem, &layout, &theta, here, |run, place| {
-            (keep && layout.is_nuisance(place)).then(|| std::mem::take(&mut kept[run][place]))
+        let kept = at.columns;
+        at = complete(problem, &layout, &theta, next.probe, |run, place| {
+            (keep && layout.is_nuisance(place)).then(|| kept[run][place].clone())
         })?;
         if gain >= weights.converged {
             exact = !weights.keep_nuisance;
@@ -141,7 +143,7 @@ pub(crate) fn fit_with(
             break;
         } else {
             // A small gain along kept sensitivities does not say that there is no larger one.
-            at = linearise(problem, &layout, &theta)?;
+            at = fresh(at, &theta)?;
             (exact, taken_at) = (true, objective);
         }
     }
@@ -152,7 +154,7 @@ pub(crate) fn fit_with(
 struct Next {
     theta: Vec<f64>,
     objective: f64,
-    discrepancy: Vec<Signals>,
+    probe: Probe,
 }
 
 /// Where steps are searched.
@@ -162,13 +164,15 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// One accepted step of (4), or `None` when no damping finds an improvement.
+    /// One accepted step of (4), or `None` when no damping finds an improvement. The first trial is mostly
+    /// taken: the sensitivities that the next step wants are simulated along with it.
     fn step(
         &self,
         theta: &[f64],
         objective: f64,
         at: &Linearised,
         damping: &mut f64,
+        along: impl Fn(usize, usize) -> bool,
     ) -> Option<Next> {
         let layout = self.layout;
         let (_, variance) = self.merit.of(layout, theta, &at.discrepancy);
@@ -198,8 +202,9 @@ impl Line<'_> {
                 }
                 *damping *= 10.0;
             }
+            let first = (tried == 0).then_some(&along);
             tried += count;
-            if let Some((used, next)) = self.first_better(objective, trials) {
+            if let Some((used, next)) = self.first_better(objective, trials, first) {
                 *damping = (used * 0.1).max(1e-9);
                 return Some(next);
             }
@@ -208,19 +213,35 @@ impl Line<'_> {
     }
 
     /// The first of several trials, in their order, that lowers the objective.
-    fn first_better(&self, objective: f64, trials: Vec<(f64, Vec<f64>)>) -> Option<(f64, Next)> {
+    fn first_better(
+        &self,
+        objective: f64,
+        trials: Vec<(f64, Vec<f64>)>,
+        along: Option<&impl Fn(usize, usize) -> bool>,
+    ) -> Option<(f64, Next)> {
+        let (problem, layout) = (self.merit.problem, self.layout);
         let (dampings, thetas): (Vec<f64>, Vec<Vec<f64>>) = trials.into_iter().unzip();
-        let all = discrepancies_of(self.merit.problem, self.layout, &thetas);
-        for ((damping, theta), discrepancy) in dampings.into_iter().zip(thetas).zip(all) {
-            let Ok(discrepancy) = discrepancy else {
+        let all: Vec<Result<Probe, EstimateError>> = match along {
+            Some(along) => {
+                let each = thetas.iter();
+                each.map(|theta| probe(problem, layout, theta, along))
+                    .collect()
+            }
+            None => discrepancies_of(problem, layout, &thetas)
+                .into_iter()
+                .map(|signals| Ok(Probe::new(layout, signals?)))
+                .collect(),
+        };
+        for ((damping, theta), probe) in dampings.into_iter().zip(thetas).zip(all) {
+            let Ok(probe) = probe else {
                 continue;
             };
-            let (value, _) = self.merit.of(self.layout, &theta, &discrepancy);
+            let (value, _) = self.merit.of(layout, &theta, &probe.discrepancy);
             if value < objective {
                 let next = Next {
                     theta,
                     objective: value,
-                    discrepancy,
+                    probe,
                 };
                 return Some((damping, next));
             }
@@ -307,7 +328,7 @@ impl<'a> Merit<'a> {
     pub(crate) fn variance(&self, discrepancy: &[Signals], reach: &Reach) -> Vec<f64> {
         (0..self.floor.len())
             .map(|c| {
-                let square = |run: &Signals| run[c].iter().map(|r| r * r).sum::<f64>();
+                let square = |run: &Signals| dot(&run[c], &run[c]);
                 discrepancy.iter().map(square).sum::<f64>() / reach.count(c).max(1.0)
             })
             .collect()

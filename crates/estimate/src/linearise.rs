@@ -1,5 +1,7 @@
 //! Residuals and their sensitivities at one point.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use simgap_simulate::{Job, LANES, Simulator, predict_all};
 
@@ -14,13 +16,17 @@ const DIFFERENCE: f64 = 1e-4;
 /// Signals of one run: one vector for each channel.
 pub(crate) type Signals = Vec<Vec<f64>>;
 
+/// The sensitivity of the signals of one run to one entry of θ; as long as the record, and shared by all
+/// fits that start at one point.
+pub(crate) type Column = Arc<Signals>;
+
 /// Discrepancies (measured minus predicted) and the sensitivities of the predictions.
 pub(crate) struct Linearised {
     /// For each run and channel, measured minus predicted.
     pub(crate) discrepancy: Vec<Signals>,
     /// For each run, for each shared entry of θ and then each entry of the run's own initial
     /// state, the derivative of the prediction by θ / scale.
-    pub(crate) columns: Vec<Vec<Signals>>,
+    pub(crate) columns: Vec<Vec<Column>>,
 }
 
 /// A run to be simulated with a packed vector.
@@ -73,17 +79,7 @@ fn batch(problem: &Problem, points: &[Point<'_>]) -> Vec<Result<Signals, Estimat
     results
 }
 
-/// Measured minus predicted, for every run and channel.
-pub(crate) fn discrepancies(
-    problem: &Problem,
-    layout: &Layout,
-    theta: &[f64],
-) -> Result<Vec<Signals>, EstimateError> {
-    let mut all = discrepancies_of(problem, layout, &[theta.to_vec()]);
-    all.pop().unwrap_or_else(|| Ok(vec![]))
-}
-
-/// As [`discrepancies`], for several vectors at once.
+/// Measured minus predicted, for every run and channel, at several vectors at once.
 pub(crate) fn discrepancies_of(
     problem: &Problem,
     layout: &Layout,
@@ -145,96 +141,181 @@ fn difference(layout: &Layout, theta: &[f64], entry: usize) -> f64 {
     }
 }
 
+/// A point as far as it has been simulated.
+pub(crate) struct Probe {
+    /// For each run and channel, measured minus predicted.
+    pub(crate) discrepancy: Vec<Signals>,
+    /// For each run, the sensitivities as in [`Linearised`], where they are known.
+    pub(crate) columns: Vec<Vec<Option<Result<Column, EstimateError>>>>,
+}
+
+impl Probe {
+    /// Discrepancies alone.
+    pub(crate) fn new(layout: &Layout, discrepancy: Vec<Signals>) -> Probe {
+        let nothing = |run| layout.entries(run).map(|_| None).collect();
+        Probe {
+            columns: (0..discrepancy.len()).map(nothing).collect(),
+            discrepancy,
+        }
+    }
+
+    /// What is known of a linearised point, but for the sensitivities at the places that are not kept.
+    pub(crate) fn of_linearised(at: Linearised, keeps: impl Fn(usize) -> bool) -> Probe {
+        let kept = |(place, column)| keeps(place).then_some(Ok(column));
+        Probe {
+            discrepancy: at.discrepancy,
+            columns: at
+                .columns
+                .into_iter()
+                .map(|list| list.into_iter().enumerate().map(kept).collect())
+                .collect(),
+        }
+    }
+}
+
+/// What is simulated of one run at a point.
+#[derive(Clone, Copy)]
+enum Part {
+    /// The run as it is.
+    Whole,
+    /// Without what moves in steps: the other end of differences that leave it out too.
+    Smooth,
+    /// With an entry of θ moved: by place in the run's list, and by number.
+    Moved(usize, usize),
+}
+
+/// Discrepancies at θ and the sensitivities that `wants` names by run and place, in one batch: for all its
+/// lanes it takes hardly longer than for one.
+///
+/// # Errors
+/// When a run cannot be simulated at θ itself; of a sensitivity the error is kept beside it.
+pub(crate) fn probe(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+    wants: impl Fn(usize, usize) -> bool,
+) -> Result<Probe, EstimateError> {
+    probe_from(problem, layout, theta, None, wants)
+}
+
+fn probe_from(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+    known: Option<Probe>,
+    wants: impl Fn(usize, usize) -> bool,
+) -> Result<Probe, EstimateError> {
+    let at = |theta: Vec<f64>, run: usize, smooth: bool| Point {
+        theta,
+        run,
+        smooth,
+        layout,
+    };
+    let mut parts: Vec<(usize, Part)> = vec![];
+    let mut points = vec![];
+    for run in 0..problem.runs.len() {
+        let whole = at(theta.to_vec(), run, false);
+        let entries = layout.entries(run).enumerate();
+        let moved: Vec<(usize, usize)> = entries
+            .filter(|&(place, entry)| !layout.is_held(entry) && wants(run, place))
+            .collect();
+        // What moves in steps is left out at both ends of a difference.
+        let is_stepped = !moved.is_empty() && whole.simulator(problem)?.is_stepped();
+        if known.is_none() {
+            parts.push((run, Part::Whole));
+            points.push(whole);
+        }
+        if is_stepped {
+            parts.push((run, Part::Smooth));
+            points.push(at(theta.to_vec(), run, true));
+        }
+        for (place, entry) in moved {
+            let mut next = theta.to_vec();
+            next[entry] += difference(layout, theta, entry);
+            parts.push((run, Part::Moved(place, entry)));
+            points.push(at(next, run, true));
+        }
+    }
+    let mut whole = vec![];
+    let mut smooth: Vec<Option<Signals>> = problem.runs.iter().map(|_| None).collect();
+    let mut moved = vec![];
+    let reach = reach(problem, layout, theta);
+    for ((run, part), signals) in parts.into_iter().zip(simulate(problem, &points)) {
+        match part {
+            Part::Whole => {
+                let mut signals = signals?;
+                reach.keep(run, &mut signals);
+                whole.push(signals);
+            }
+            Part::Smooth => smooth[run] = Some(signals?),
+            Part::Moved(place, entry) => moved.push((run, place, entry, signals)),
+        }
+    }
+    let mut probe = known.unwrap_or_else(|| Probe::new(layout, whole));
+    for (run, place, entry, signals) in moved {
+        let own = smooth[run].as_ref().unwrap_or(&probe.discrepancy[run]);
+        let factor = layout.scale[entry] / difference(layout, theta, entry);
+        probe.columns[run][place] = Some(signals.map(|signals| {
+            let mut column = derivative(signals, own, factor);
+            reach.keep(run, &mut column);
+            Arc::new(column)
+        }));
+    }
+    Ok(probe)
+}
+
 /// Discrepancies and all sensitivities at θ.
 pub(crate) fn linearise(
     problem: &Problem,
     layout: &Layout,
     theta: &[f64],
 ) -> Result<Linearised, EstimateError> {
-    let discrepancy = discrepancies(problem, layout, theta)?;
-    let columns = vec![vec![]; problem.runs.len()];
-    let known = Linearised {
-        discrepancy,
-        columns,
-    };
-    refresh(problem, layout, theta, known, |_, _| None)
+    let all = probe(problem, layout, theta, |_, _| true)?;
+    complete(problem, layout, theta, all, |_, _| None)
 }
 
-/// Sensitivities at θ, where `known` holds its discrepancies and `stale` may hand over a column of
-/// a run (run, place in the run's list) from another point instead of computing it.
+/// All sensitivities at θ, where `known` holds its discrepancies and those that were simulated along with
+/// them, and `stale` may hand over a column of a run (run, place) from another point.
 ///
-/// All that is missing, of all runs, is simulated in one batch.
-pub(crate) fn refresh(
+/// What is missing then, of all runs, is simulated in one batch.
+pub(crate) fn complete(
     problem: &Problem,
     layout: &Layout,
     theta: &[f64],
-    known: Linearised,
-    mut stale: impl FnMut(usize, usize) -> Option<Signals>,
+    mut known: Probe,
+    stale: impl Fn(usize, usize) -> Option<Column>,
 ) -> Result<Linearised, EstimateError> {
-    let discrepancy = known.discrepancy;
-    let at = |theta: Vec<f64>, run: usize| Point {
-        theta,
-        run,
-        smooth: true,
-        layout,
-    };
-    let mut columns: Vec<Vec<Option<Signals>>> = Vec::with_capacity(discrepancy.len());
-    let mut points = Vec::new();
-    let mut stepped = Vec::new();
-    for (run, own) in discrepancy.iter().enumerate() {
-        let mut list = Vec::new();
+    for run in 0..problem.runs.len() {
         for (place, entry) in layout.entries(run).enumerate() {
-            list.push(stale(run, place).or_else(|| {
-                let zero = |signal: &Vec<f64>| vec![0.0; signal.len()];
-                layout
-                    .is_held(entry)
-                    .then(|| own.iter().map(zero).collect())
-            }));
-            if list[place].is_none() {
-                let mut moved = theta.to_vec();
-                moved[entry] += difference(layout, theta, entry);
-                points.push(at(moved, run));
+            let own = &known.discrepancy[run];
+            let column = &mut known.columns[run][place];
+            if column.is_none() {
+                let still = || {
+                    let zero = |signal: &Vec<f64>| vec![0.0; signal.len()];
+                    let is_held = layout.is_held(entry);
+                    is_held.then(|| Arc::new(own.iter().map(zero).collect()))
+                };
+                *column = stale(run, place).or_else(still).map(Ok);
             }
         }
-        columns.push(list);
-        let here = at(theta.to_vec(), run);
-        stepped.push(here.simulator(problem)?.is_stepped());
     }
-    // What moves in steps is left out at both ends of a difference.
-    let bases = (0..stepped.len()).filter(|&run| stepped[run]);
-    let mut smooth = simulate(
-        problem,
-        &bases.map(|run| at(theta.to_vec(), run)).collect::<Vec<_>>(),
-    )
-    .into_iter();
-    let mut changes = simulate(problem, &points).into_iter();
-    let mut all = Vec::with_capacity(columns.len());
-    let reach = reach(problem, layout, theta);
-    for (run, list) in columns.into_iter().enumerate() {
-        let smooth = if stepped[run] {
-            smooth.next().transpose()?
-        } else {
-            None
-        };
-        let own = smooth.as_ref().unwrap_or(&discrepancy[run]);
-        let mut filled = Vec::with_capacity(list.len());
-        for (column, entry) in list.into_iter().zip(layout.entries(run)) {
-            filled.push(match column {
-                Some(column) => column,
-                None => {
-                    let moved = changes.next().unwrap_or_else(|| Ok(vec![]))?;
-                    let factor = layout.scale[entry] / difference(layout, theta, entry);
-                    let mut column = derivative(moved, own, factor);
-                    reach.keep(run, &mut column);
-                    column
-                }
-            });
-        }
-        all.push(filled);
+    let missing: Vec<Vec<bool>> = known
+        .columns
+        .iter()
+        .map(|list| list.iter().map(Option::is_none).collect())
+        .collect();
+    if missing.iter().flatten().any(|missing| *missing) {
+        let wants = |run: usize, place: usize| missing[run][place];
+        known = probe_from(problem, layout, theta, Some(known), wants)?;
     }
+    let all = |list: Vec<Option<_>>| list.into_iter().flatten().collect();
     Ok(Linearised {
-        discrepancy,
-        columns: all,
+        discrepancy: known.discrepancy,
+        columns: known
+            .columns
+            .into_iter()
+            .map(all)
+            .collect::<Result<_, _>>()?,
     })
 }
 

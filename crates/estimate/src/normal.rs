@@ -7,25 +7,25 @@ use rayon::prelude::*;
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Signals};
 
+/// Running sums of a dot product: enough additions that do not wait for each other.
+const SUMS: usize = 16;
+
+/// Σ xᵢ yᵢ.
+pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let mut sums = [0.0; SUMS];
+    let (xs, ys) = (x.chunks_exact(SUMS), y.chunks_exact(SUMS));
+    let rest = xs.remainder().iter().zip(ys.remainder());
+    let rest: f64 = rest.map(|(p, q)| p * q).sum();
+    for (p, q) in xs.zip(ys) {
+        for k in 0..SUMS {
+            sums[k] += p[k] * q[k];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
 /// Weighted inner product of two sets of signals.
 pub(crate) fn inner(a: &Signals, b: &Signals, weights: &[f64]) -> f64 {
-    let dot = |x: &[f64], y: &[f64]| -> f64 {
-        // Four running sums keep the additions independent of each other.
-        let mut sums = [0.0; 4];
-        let (x4, y4) = (x.chunks_exact(4), y.chunks_exact(4));
-        let rest: f64 = x4
-            .remainder()
-            .iter()
-            .zip(y4.remainder())
-            .map(|(p, q)| p * q)
-            .sum();
-        for (p, q) in x4.zip(y4) {
-            for k in 0..4 {
-                sums[k] += p[k] * q[k];
-            }
-        }
-        sums.iter().sum::<f64>() + rest
-    };
     a.iter()
         .zip(b)
         .zip(weights)

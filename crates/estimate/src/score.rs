@@ -11,6 +11,7 @@
 //! (1) is the score test of the effect, â the size the data ask for and the start of its fit.
 
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
@@ -214,7 +215,10 @@ impl Base<'_> {
             })?;
             let factor = layout.scale[place] / self.layout.scale[twin];
             let mut column = self.at.columns[run][twin].clone();
-            column.iter_mut().flatten().for_each(|x| *x *= factor);
+            if factor != 1.0 {
+                let values = Arc::make_mut(&mut column).iter_mut().flatten();
+                values.for_each(|x| *x *= factor);
+            }
             Some(column)
         })
     }
