@@ -64,6 +64,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod base;
 mod fit;
 mod information;
 mod initial;
@@ -76,11 +77,12 @@ mod reach;
 mod score;
 mod site;
 
+pub use base::{Base, linearise_at};
 pub use fit::{Fit, Interval, fit};
 pub use initial::{fit_initial_states, simulator_at};
 pub use layout::{Candidate, Start};
 pub use outright::score_outright;
 pub use problem::{Problem, Weights};
-pub use score::{Base, Score, linearise_at, score};
+pub use score::{Score, score};
 
 pub use simgap_simulate::SimulateError as EstimateError;

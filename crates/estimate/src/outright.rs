@@ -3,11 +3,12 @@
 //! The linear score sees an effect while it is small. Friction that holds, a stop that is hit and a
 //! mode that rings are not small effects grown large: which of their values to start a fit from, only a
 //! simulation with these values tells. The change of the prediction by the effect as it stands takes
-//! the place of the column C in (1) of [`score`](crate::score), and all sizes of the effect are taken
+//! the place of the column C in (1) of [`score`](crate::score()), and all sizes of the effect are taken
 //! in proportion at what the data ask for.
 
+use crate::base::{Base, Trial};
 use crate::linearise::Signals;
-use crate::score::{Base, SHAPES_TOGETHER, Score, Trial, sized};
+use crate::score::{SHAPES_TOGETHER, Score, sized};
 use crate::{Candidate, EstimateError};
 
 /// Scores one candidate at each of many values, best first. Values from which the plant runs away are

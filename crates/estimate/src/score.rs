@@ -11,41 +11,17 @@
 //! (1) is the score test of the effect, â the size the data ask for and the start of its fit.
 
 use std::f64::consts::FRAC_PI_2;
-use std::sync::Arc;
 
-use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
 use simgap_effects::{Clock, Effect, Placed, SiteScale};
-use simgap_simulate::{Job, predict_all};
 
-use crate::fit::{Merit, fit_with, state_scale};
-use crate::layout::{Freedom, Layout};
-use crate::linearise::{Linearised, Signals, linearise};
-use crate::normal::{inner, normal_equations};
-use crate::reach::Reach;
-use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
+use crate::base::{Base, Trial};
+use crate::linearise::Signals;
+use crate::{Candidate, EstimateError};
 
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
 const TRIAL: f64 = 0.02;
 /// Shapes that are simulated in one batch: their columns are as long as the records.
 pub(crate) const SHAPES_TOGETHER: usize = 8;
-/// Columns that keep less than this of their energy past the nuisance are explained by it.
-const HIDDEN: f64 = 1e-6;
-
-/// A fit, linearised once for the score of many effects.
-pub struct Base<'a> {
-    pub(crate) problem: &'a Problem,
-    pub(crate) fit: &'a Fit,
-    pub(crate) layout: Layout,
-    pub(crate) at: Linearised,
-    reach: Reach,
-    pub(crate) weights: Vec<f64>,
-    pub(crate) hessian: Mat<f64>,
-    pub(crate) gradient: Vec<f64>,
-    pub(crate) independent_samples: f64,
-    /// rᵀWr of (2).
-    pub(crate) energy: f64,
-}
 
 /// What a further effect would bring.
 #[derive(Clone)]
@@ -56,43 +32,6 @@ pub struct Score {
     pub share: f64,
     /// The effect with the size the data ask for, inside its physical bounds.
     pub start: Placed,
-}
-
-/// Prepares the score of many effects at one fit.
-///
-/// # Errors
-/// [`EstimateError`] when the model cannot be propagated.
-pub fn linearise_at<'a>(
-    problem: &'a Problem,
-    fit: &'a Fit,
-    weights: &Weights,
-) -> Result<Base<'a>, EstimateError> {
-    let freedom = Freedom {
-        nominal_prior: weights.nominal_prior,
-        shared_held: false,
-    };
-    let layout = Layout::new(&fit.estimate, &state_scale(problem), freedom);
-    let theta = layout.pack(&fit.estimate);
-    let at = linearise(problem, &layout, &theta)?;
-    let merit = Merit::new(problem, weights);
-    let reach = Reach::of(problem, &fit.estimate.effects);
-    let channel_weights = merit.weights(&merit.variance(&at.discrepancy, &reach));
-    let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
-    let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
-    let squared = |run: &Signals| inner(run, run, &channel_weights);
-    let energy = at.discrepancy.iter().map(squared).sum();
-    Ok(Base {
-        energy,
-        problem,
-        fit,
-        layout,
-        at,
-        reach,
-        weights: channel_weights,
-        hessian,
-        gradient,
-        independent_samples: count * weights.independence.iter().sum::<f64>(),
-    })
 }
 
 /// Scores one candidate from each of its starting shapes, best first. Shapes that would need a
@@ -118,9 +57,6 @@ pub fn score(
     scores.sort_by(|a: &Score, b: &Score| b.gain.total_cmp(&a.gain));
     Ok(scores)
 }
-
-/// An instance of a candidate, and the share of its starting values that it is.
-pub(crate) type Trial = (Vec<f64>, f64);
 
 /// How the instances of a shape are scored.
 enum Way {
@@ -192,37 +128,6 @@ pub(crate) fn sized(
 }
 
 impl Base<'_> {
-    /// Fits a set that shares nominal parameters and initial states with the base, starting from
-    /// the sensitivities known here.
-    ///
-    /// # Errors
-    /// [`EstimateError`] when the model cannot be propagated from the start.
-    pub fn fit(&self, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
-        fit_with(self.problem, start, weights, false, |layout, run, place| {
-            if !layout.is_nuisance(place) {
-                return None;
-            }
-            let shared = layout.shared_len();
-            if place >= shared {
-                // Initial states keep their order and scale.
-                let state = place - shared - layout.own_len();
-                let own = self.layout.shared_len() + self.layout.own_len() + state;
-                return self.at.columns[run].get(own).cloned();
-            }
-            let (placed, value) = layout.shared().nth(place)?;
-            let twin = self.layout.shared().position(|(p, v)| {
-                v == value && p.effect.kind() == placed.effect.kind() && p.at == placed.at
-            })?;
-            let factor = layout.scale[place] / self.layout.scale[twin];
-            let mut column = self.at.columns[run][twin].clone();
-            if factor != 1.0 {
-                let values = Arc::make_mut(&mut column).iter_mut().flatten();
-                values.for_each(|x| *x *= factor);
-            }
-            Some(column)
-        })
-    }
-
     /// Scores a shape from the columns of its trials.
     fn score_shape(
         &self,
@@ -333,120 +238,5 @@ impl Base<'_> {
             })
             .collect();
         Some(score)
-    }
-
-    /// Change of the prediction of every run by each trial, divided by its share.
-    pub(crate) fn columns(
-        &self,
-        candidate: &Candidate,
-        trials: &[Trial],
-    ) -> Result<Vec<Vec<Signals>>, EstimateError> {
-        let estimate = &self.fit.estimate;
-        let runs = self.problem.runs.len();
-        let mut simulators = Vec::with_capacity(trials.len() * runs);
-        for (values, _) in trials {
-            let trial = Placed::new(candidate.effect, candidate.at.clone(), values.clone());
-            let known = estimate.effects.iter().chain(&estimate.nominal);
-            let effects: Vec<Placed> = known.chain([&trial]).cloned().collect();
-            for run in 0..runs {
-                simulators.push(self.problem.simulator(&effects, run)?);
-            }
-        }
-        let jobs: Vec<Job<'_>> = simulators
-            .iter()
-            .enumerate()
-            .map(|(k, simulator)| Job {
-                simulator,
-                run: &self.problem.runs[k % runs],
-                initial: &estimate.initial[k % runs],
-                smooth: false,
-            })
-            .collect();
-        let mut predicted = predict_all(&jobs).into_iter();
-        trials
-            .iter()
-            .map(|(_, share)| {
-                let of_trial = predicted.by_ref().take(runs).enumerate();
-                of_trial
-                    .map(|(run, signals)| Ok(self.change(run, signals?, *share)))
-                    .collect()
-            })
-            .collect()
-    }
-
-    /// Change of the prediction of a run, divided by the share.
-    fn change(&self, run: usize, mut predicted: Signals, share: f64) -> Signals {
-        for (c, signal) in predicted.iter_mut().enumerate() {
-            let before = &self.at.discrepancy[run][c];
-            match &self.problem.runs[run].measured[c] {
-                Some(measured) => {
-                    for (i, p) in signal.iter_mut().enumerate() {
-                        *p = (*p - (measured[i] - before[i])) / share;
-                    }
-                }
-                None => signal.fill(0.0),
-            }
-        }
-        self.reach.keep(run, &mut predicted);
-        predicted
-    }
-
-    /// Solves (1): amplitudes and the energy bᵀâ they explain.
-    pub(crate) fn amplitudes(&self, columns: &[Vec<Signals>]) -> Option<(Vec<f64>, f64)> {
-        let (k, len) = (columns.len(), self.layout.len());
-        let mut cross = Mat::<f64>::zeros(len, k);
-        let mut own = Mat::<f64>::zeros(k, k);
-        let mut right = vec![0.0; k];
-        for run in 0..self.at.discrepancy.len() {
-            for (j, column) in columns.iter().enumerate() {
-                right[j] += inner(&column[run], &self.at.discrepancy[run], &self.weights);
-                for (row, nuisance) in self.layout.entries(run).zip(&self.at.columns[run]) {
-                    cross[(row, j)] += inner(nuisance, &column[run], &self.weights);
-                }
-                for (i, other) in columns.iter().enumerate() {
-                    own[(i, j)] += inner(&other[run], &column[run], &self.weights);
-                }
-            }
-        }
-        let projected = self.past_nuisance(&cross);
-        let free = Mat::from_fn(k, k, |i, j| {
-            let taken: f64 = (0..len).map(|l| cross[(l, i)] * projected[(l, j)]).sum();
-            let value = own[(i, j)] - taken;
-            if i == j { value * (1.0 + 1e-9) } else { value }
-        });
-        let seen = |i: usize| free[(i, i)] > HIDDEN * own[(i, i)];
-        if !(0..k).all(seen) {
-            return None;
-        }
-        let b: Vec<f64> = (0..k)
-            .map(|j| {
-                let taken: f64 = (0..len).map(|l| projected[(l, j)] * self.gradient[l]).sum();
-                right[j] - taken
-            })
-            .collect();
-        let solution = free
-            .llt(Side::Lower)
-            .ok()?
-            .solve(Mat::from_fn(k, 1, |i, _| b[i]));
-        let amplitude: Vec<f64> = (0..k).map(|i| solution[(i, 0)]).collect();
-        let energy = amplitude.iter().zip(&b).map(|(a, b)| a * b).sum();
-        Some((amplitude, energy))
-    }
-
-    /// H⁻¹ times columns of JᵀW.
-    fn past_nuisance(&self, right: &Mat<f64>) -> Mat<f64> {
-        let len = self.layout.len();
-        if len == 0 {
-            return Mat::zeros(0, right.ncols());
-        }
-        let ridged = Mat::from_fn(len, len, |i, j| {
-            let value = self.hessian[(i, j)];
-            if i == j {
-                value * (1.0 + 1e-10) + f64::MIN_POSITIVE
-            } else {
-                value
-            }
-        });
-        ridged.full_piv_lu().solve(right)
     }
 }
