@@ -77,13 +77,15 @@ pub(crate) fn adjusted(start: &Start, nominal: &[Placed]) -> Start {
 
 /// Adds to named nominal parameters the dynamics that turn into them, or into parameters that fit as well in
 /// their place. `set` is the named set as it was judged, with all other parameters held; `settled` the same
-/// with the others, `nominal`, under their prior, as the dynamics leave them.
+/// with the others, `nominal`, under their prior, as the dynamics leave them. The best set with such dynamics is
+/// returned where it is better than the named one.
 pub(crate) fn add_rivals_out_of_sight(
     search: &Search<'_>,
     [set, settled]: [&Hypothesis; 2],
     nominal: &[Placed],
     judged: &mut [Judged],
-) -> Result<(), EstimateError> {
+) -> Result<Option<Hypothesis>, EstimateError> {
+    let mut better: Option<Hypothesis> = None;
     for (i, judged) in judged.iter_mut().enumerate() {
         let mut limits = vec![judged.placed.clone()];
         let mut rivals = search.grow(settled, i)?;
@@ -120,8 +122,13 @@ pub(crate) fn add_rivals_out_of_sight(
             });
         }
         judged.probability *= shares[0];
+        let best = better.as_ref().unwrap_or(settled).evidence;
+        better = rivals
+            .into_iter()
+            .find(|rival| rival.evidence > best)
+            .or(better);
     }
-    Ok(())
+    Ok(better)
 }
 
 /// A start without the other parameters that an effect of it turns into: it takes the place of all.

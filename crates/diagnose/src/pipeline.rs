@@ -350,10 +350,23 @@ fn search(
         let nominal = nominal_parameters(request, train);
         let settled = search.fit(&adjusted(&start, &nominal))?;
         start = settled.fit.estimate.clone();
+        let mut left = &settled;
         if scope == Scope::Everything {
-            add_rivals_out_of_sight(&search, [&set, &settled], &nominal, &mut judged)?;
+            let sets = [&set, &settled];
+            let better = add_rivals_out_of_sight(&search, sets, &nominal, &mut judged)?;
+            let better = better.map(|better| prune(&search, better)).transpose()?;
+            let more = |set: &Hypothesis| !set.effects().iter().all(is_nominal);
+            if let Some(better) = better.filter(more) {
+                // Found from where the parameters are known, it earns its place after all.
+                let better = judge(&search, better, MOST_SWAPS)?;
+                if more(&better.0) {
+                    (set, judged) = better;
+                    start = set.fit.estimate.clone();
+                    left = &set;
+                }
+            }
         }
-        remainder(&search, &settled)?
+        remainder(&search, left)?
     } else {
         remainder(&search, &set)?
     };

@@ -123,7 +123,8 @@ fn ends(parameter: &Parameter) -> impl Iterator<Item = f64> + use<> {
     ends.filter(|end| end.is_finite() && *end != 0.0)
 }
 
-fn is_unseen(interval: &Interval) -> bool {
+/// Whether the data hardly show a parameter.
+pub(crate) fn is_unseen(interval: &Interval) -> bool {
     let [low, high] = interval.ci95;
     !(low.is_finite() && high.is_finite()) || low <= 0.0 && high > 0.0 || high / low > UNSEEN
 }

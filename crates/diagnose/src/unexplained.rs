@@ -30,6 +30,8 @@ const OF_SOME_USE: f64 = 0.3;
 const STAND_IN_STANDS_OUT: f64 = 1.2;
 /// Two laws at one place that are there leave the noise of the check records, but for this factor.
 const TWO_STAND_OUT: f64 = 1.03;
+/// What may be left, as a multiple of the noise, beside a parameter that is off by more than it is known to.
+const BENT_STANDS_OUT: f64 = 1.1;
 /// What leaves less than this multiple of the noise leaves nothing.
 pub(crate) const NOTHING_BUT_NOISE: f64 = 1.1;
 /// The same where samples are lost or stored in steps: no model says which, and the noise is known less well.
@@ -38,6 +40,7 @@ const NOTHING_BUT_EVENTS: f64 = 1.3;
 /// Whether structure well above the noise is left that the set does not explain.
 pub(crate) fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
     if imitation(answer, gap)
+        || bent(answer, gap)
         || another_law(answer, gap)
         || is_poor_stand_in(answer, gap) && !answer.follows_anew
         || is_of_no_use(answer, gap, status)
@@ -71,7 +74,7 @@ pub(crate) fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: S
         || (status == Status::Parameters && gap.closed < CLOSES_BEYOND_RECALIBRATION)
         || (status == Status::Effect
             && leaves_much(gap)
-            && !explains_all_it_saw(answer)
+            && !explains_all_it_saw(answer, gap)
             && !answer.follows_anew)
 }
 
@@ -84,15 +87,20 @@ pub(crate) fn leaves_much(gap: &Gap) -> bool {
 
 /// Whether a set with one force at the most, and no dynamics, leaves nothing but noise of the records it was
 /// fitted to. Where it fails on the check records then, their motion hangs on differences that no estimate
-/// resolves: play, sticking.
-fn explains_all_it_saw(answer: &Answer) -> bool {
+/// resolves: play, sticking, which samples are lost. Not where the model as given does better.
+fn explains_all_it_saw(answer: &Answer, gap: &Gap) -> bool {
     let is_sampling = |placed: &Placed| matches!(placed.action(), Action::Sampling(_));
-    let most = if answer.named().any(is_sampling) {
+    let samples = answer.named().any(is_sampling);
+    let most = if samples {
         NOTHING_BUT_EVENTS
     } else {
         NOTHING_BUT_NOISE
     };
-    !names(answer, Family::Dynamics) && laws(answer) <= 1 && answer.remainder.over_noise < most
+    (samples || has_force(answer))
+        && !names(answer, Family::Dynamics)
+        && laws(answer) <= 1
+        && answer.remainder.over_noise < most
+        && gap.corrected < gap.nominal
 }
 
 /// Named forces and dynamics.
@@ -130,6 +138,28 @@ fn two_for_one(answer: &Answer, gap: &Gap) -> bool {
         && gap.corrected > TWO_STAND_OUT * gap.noise_floor
 }
 
+/// Whether a law is named beside a parameter of its place that is off by more than anyone is in error about it, and
+/// something is left: together they imitate a law that the catalogue lacks.
+fn bent(answer: &Answer, gap: &Gap) -> bool {
+    let is_far = |placed: &&Placed| {
+        let off = placed
+            .values
+            .first()
+            .map_or(0.0, |factor| factor.ln().abs());
+        let known = placed.effect.known_to_factor();
+        known.is_some_and(|factor| off > factor.ln())
+    };
+    let fitted = answer.estimate.estimate.effects.iter();
+    let mut far = fitted.filter(is_far);
+    gap.corrected > BENT_STANDS_OUT * gap.noise_floor
+        && far.any(|far| {
+            let mut laws = answer
+                .named()
+                .filter(|other| other.effect.family().is_law());
+            laws.any(|law| law.at == far.at)
+        })
+}
+
 /// Whether a law of another shape than the named one acts at its place.
 fn another_law(answer: &Answer, gap: &Gap) -> bool {
     let Some(law) = &answer.remainder.law else {
@@ -157,7 +187,7 @@ fn is_of_no_use(answer: &Answer, gap: &Gap, status: Status) -> bool {
     status == Status::Effect
         && gap.closed < CLOSES
         && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < OF_SOME_USE
-        && !explains_all_it_saw(answer)
+        && !explains_all_it_saw(answer, gap)
         && !answer.follows_anew
 }
 

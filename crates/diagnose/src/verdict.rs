@@ -2,13 +2,14 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Equivalent, Placed, SiteScale, same_place};
-use simgap_estimate::{EstimateError, Fit, Interval, Problem, Start};
+use simgap_estimate::{EstimateError, Fit, Interval, Start};
 
 use crate::confirm::confirmed;
-use crate::evidence::{freedom, is_nominal, probabilities};
+use crate::evidence::{evidence, freedom, is_nominal, probabilities};
 use crate::hypothesis::{Hypothesis, name, pull, remove, sort, unique};
 use crate::out_of_sight::turns_into;
 use crate::search::Search;
+use crate::stand_in::is_unseen;
 
 /// Evidence an effect must bring beyond its own penalty. Calibrated on generated cases so that
 /// noise alone earns an effect in fewer than one case in twenty.
@@ -16,9 +17,14 @@ pub(crate) const EARNS: f64 = 6.0;
 /// Smallest relative fall of the squared discrepancy that counts as an effect: below it the
 /// integration of the nominal model is no better.
 pub(crate) const RELEVANT: f64 = 0.02;
-/// Smallest motion of an output, relative to its standard deviation, that counts as an effect:
-/// inputs known only at the samples leave the prediction uncertain by about half of it.
-pub(crate) const MOVES: f64 = 3e-3;
+/// Smallest motion of an output, relative to its standard deviation, that counts as an effect.
+const MOVES: f64 = 3e-3;
+/// The same between a law and a special case of it, as a multiple of what a simulation may be off: what else is off
+/// in one of them is off in the other.
+const MOVES_ALIKE: f64 = 2.0;
+/// A nominal parameter and a force in its place are the same as long as they differ by less than this share of
+/// the motion.
+const SAME_AS_PARAMETER: f64 = 1.5e-3;
 /// A rival whose evidence is this close cannot be told from the named effect.
 pub(crate) const INDISTINGUISHABLE: f64 = 4.0;
 /// Share of the gap (above the noise floor) that a verdict must close, else the cause is unknown.
@@ -82,17 +88,22 @@ pub(crate) struct Judged {
     pub(crate) swaps: Vec<Swap>,
 }
 
-/// Whether an effect moves an output by more than the simulation itself may be off: `larger` has
-/// it, `smaller` lacks it.
-fn relevant(problem: &Problem, larger: &Fit, smaller: &Fit) -> bool {
-    let moved = smaller
-        .variance
-        .iter()
-        .zip(&larger.variance)
-        .zip(problem.output_std())
-        .map(|((poorer, better), std)| (poorer - better).max(0.0).sqrt() / std)
-        .fold(0.0, f64::max);
-    moved > MOVES && fall(smaller, larger) > RELEVANT
+/// Whether an effect moves an output by more than a simulation may be off: `larger` has it, `smaller` lacks it.
+fn relevant(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool {
+    let least = search.problem.output_std().into_iter();
+    moves(larger, smaller, least.map(|std| MOVES * std))
+}
+
+/// The same where `smaller` has a special case of the law in its place.
+fn relevant_beyond_special_case(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool {
+    let least = search.accuracy.iter();
+    moves(larger, smaller, least.map(|off| MOVES_ALIKE * off))
+}
+
+fn moves(larger: &Fit, smaller: &Fit, least: impl Iterator<Item = f64>) -> bool {
+    let variances = smaller.variance.iter().zip(&larger.variance);
+    let moved = variances.map(|(poorer, better)| (poorer - better).max(0.0).sqrt());
+    moved.zip(least).any(|(moved, least)| moved > least) && fall(smaller, larger) > RELEVANT
 }
 
 /// The best of the finalists, or a smaller set that predicts as well but for what a simulation may
@@ -129,7 +140,7 @@ fn does_as_well(search: &Search<'_>, larger: &Hypothesis, smaller: &Hypothesis) 
     } else {
         pull(&smaller.fit.estimate) - pull(&larger.fit.estimate) < EARNS
     };
-    holds && !relevant(search.problem, &larger.fit, &smaller.fit)
+    holds && !relevant(search, &larger.fit, &smaller.fit)
 }
 
 /// Relative fall of the squared discrepancy from a poorer fit to a better one, on the channel that
@@ -199,7 +210,12 @@ fn earns(
         return Ok(true);
     }
     let shrunk = set.effects().len() == subset.effects().len();
-    Ok(relevant(search.problem, &set.fit, &subset.fit)
+    let is_relevant = if shrunk {
+        relevant_beyond_special_case(search, &set.fit, &subset.fit)
+    } else {
+        relevant(search, &set.fit, &subset.fit)
+    };
+    Ok(is_relevant
         && (shrunk || matters(search, set, subset))
         && (set.effects().len() < 2 || confirmed(search, set, subset)?))
 }
@@ -243,6 +259,27 @@ pub(crate) fn is_told_from_none(placed: &Placed, intervals: &[Interval]) -> bool
         .filter(|(neutral, _)| neutral.is_finite())
         .peekable();
     sizes.peek().is_none() || sizes.any(|(neutral, [low, high])| neutral < low || neutral > high)
+}
+
+/// By how much a set must lead one that names a parameter in the place of dynamics that turn into it and nothing
+/// else; `None` where that is not how they differ. Without end where the dynamics move no output by more than the
+/// simulation may be off, and the parameter need not go far for it.
+fn must_lead(search: &Search<'_>, dynamics: &Hypothesis, limit: &Hypothesis) -> Option<f64> {
+    let key = limit.key();
+    let mut each = dynamics.effects().iter().zip(&dynamics.fit.intervals);
+    let (hidden, intervals) = each.find(|(placed, _)| !key.contains(&name(placed)))?;
+    turns_into((hidden.effect, &hidden.at), replacement(dynamics, limit)?)?;
+    if hidden.effect.turns_into().len() != 1 {
+        return None;
+    }
+    let further = pull(&limit.fit.estimate) - pull(&dynamics.fit.estimate);
+    if further < EARNS && !relevant(search, &dynamics.fit, &limit.fit) {
+        return Some(f64::INFINITY);
+    }
+    let parameters = hidden.effect.parameters().iter().zip(intervals);
+    let mut shapes = parameters.filter(|(parameter, _)| parameter.neutral.is_none());
+    let hides = shapes.any(|(_, interval)| is_unseen(interval));
+    hides.then_some(INDISTINGUISHABLE)
 }
 
 /// Finds the rivals of each effect of a set and weighs them. Where a rival turns out better than
@@ -301,10 +338,10 @@ fn judge_effect(
     rivals.retain(|rival| rival.key() != set.key());
     sort(&mut rivals);
     unique(&mut rivals);
-    let mut evidence = vec![set.evidence, subset.evidence];
-    evidence.extend(rivals.iter().map(|rival| rival.evidence));
+    let mut each = vec![set.evidence, subset.evidence];
+    each.extend(rivals.iter().map(|rival| rival.evidence));
     // The set, the set without the effect, then the rivals.
-    let shares = probabilities(&evidence);
+    let shares = probabilities(&each);
     let swaps: Vec<Swap> = rivals
         .iter()
         .map(|rival| {
@@ -337,9 +374,14 @@ fn judge_effect(
         relevance: fall(&subset.fit, &set.fit),
         swaps,
     };
-    // A simpler rival that is about as likely is the better name; one as rich must lead.
+    // A simpler rival that is about as likely is the better name, and so is the parameter that dynamics turn into
+    // whose mode no record shows; one as rich must lead.
     let handicap = |rival: &Hypothesis| {
-        if freedom(&rival.fit) < freedom(&set.fit) {
+        if let Some(lead) = must_lead(search, set, rival) {
+            -lead
+        } else if let Some(lead) = must_lead(search, rival, set) {
+            lead
+        } else if freedom(&rival.fit) < freedom(&set.fit) {
             -SIMPLER
         } else {
             TIE
@@ -361,7 +403,7 @@ fn discount(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
         .effects()
         .iter()
         .any(|old| old.at == new.at && new.effect.contains().contains(&old.effect.kind()));
-    if nested && !relevant(search.problem, &rival.fit, &set.fit) {
+    if nested && !relevant_beyond_special_case(search, &rival.fit, &set.fit) {
         rival.evidence = rival
             .evidence
             .min(set.evidence - search.penalty(rival, set));
@@ -378,7 +420,7 @@ fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
         }
         _ => false,
     };
-    let least = if is_parameter { 0.5 * MOVES } else { 0.0 };
+    let least = if is_parameter { SAME_AS_PARAMETER } else { 0.0 };
     let std = search.problem.output_std();
     let off = search.accuracy.iter().zip(std);
     let variances = set.fit.variance.iter().zip(&rival.fit.variance);
@@ -386,6 +428,10 @@ fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
     if channels.all(|((own, its), off)| (own - its).abs().sqrt() < off) {
         let misfit = |set: &Hypothesis| set.fit.objective - pull(&set.fit.estimate);
         rival.evidence += misfit(rival) - misfit(set);
+        if replacement(set, rival).is_some_and(is_nominal) {
+            // A set that took a place in this way has kept what it was given: so does a parameter in its place.
+            rival.evidence += set.evidence - evidence(&set.fit, search.effective_samples);
+        }
     }
 }
 

@@ -103,6 +103,28 @@ fn verify_a_support_is_not_taken_for_two_parameters() {
     assert!((found / values[0] - 1.0).abs() < 0.2, "{found}");
 }
 
+/// A mass on a spring that no record shows swinging is as good as a heavier mass, and has more to say for itself.
+#[test]
+fn verify_a_heavier_mass_is_not_taken_for_one_on_a_spring() {
+    for (mass, factor) in [("base", 1.08), ("top", 1.2)] {
+        let at = Location::Mass(mass.into());
+        let outcome = diagnosed(&[placed("mass_error", at.clone(), &[factor])], &[]);
+        assert_eq!(named(&outcome), [("mass_error".into(), at)]);
+    }
+}
+
+/// A spring that is gone and a stop on either side are play. Where play is not looked for, they are not named as
+/// if they were the cause.
+#[test]
+fn verify_a_law_is_not_made_of_a_spring_that_is_gone() {
+    let truth = [placed("backlash", ground(), &[4e-4])];
+    let outcome = diagnosed(&truth, &["backlash"]);
+    let verdict = &outcome.diagnosis.verdict;
+    let honest =
+        verdict.status == Status::Unknown || verdict.effects.iter().any(|effect| effect.stand_in);
+    assert!(honest, "{verdict:?}");
+}
+
 /// What comes late on every channel by the same time was late before the sensors. Where nothing before them is
 /// looked for, it is not blamed on each of them.
 #[test]

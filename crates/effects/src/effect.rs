@@ -306,6 +306,11 @@ pub trait Effect: Sync + Send {
         vec![]
     }
 
+    /// The factor that a nominal parameter is known to, whoever made the model; `None` where that is anyone's guess.
+    fn known_to_factor(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether values are still what the kind says, at a place of these sizes; a fit that leaves them is no
     /// hypothesis.
     fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {

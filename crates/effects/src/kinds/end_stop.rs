@@ -15,6 +15,9 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// Reference: \[Worden2001\], chapter 1.
 pub(crate) struct EndStop;
 
+/// A gap below this share of the range of the motion is none.
+const NO_GAP: f64 = 0.01;
+
 struct Law {
     upper: f64,
     lower: f64,
@@ -100,6 +103,14 @@ impl Effect for EndStop {
         }))
     }
 
+    fn doubt(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+        let [low, high] = scale.displacement_range_m;
+        let nothing = NO_GAP * (high - low);
+        let mut gaps = ci95.iter().take(2);
+        gaps.any(|[least, most]| *least <= 0.0 && *most < nothing)
+            .then_some("a stop without a gap is a spring that is stiffer on that side")
+    }
+
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
         &[
             (
@@ -115,5 +126,21 @@ impl Effect for EndStop {
 
     fn experiment(&self) -> &'static str {
         "slow motion over the whole range: the force rises steeply at the stop"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stop_without_a_gap_is_in_doubt() {
+        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
+        let range = scale.displacement_range_m[1] - scale.displacement_range_m[0];
+        let of = |upper: [f64; 2]| EndStop.doubt(&[upper, [5e-4, 6e-4], [1e4, 2e4]], &scale);
+        assert!(of([0.0, 1e-3 * range]).is_some());
+        // A wide interval that holds zero says nothing about the gap; one away from zero says that there is one.
+        assert!(of([0.0, 0.1 * range]).is_none());
+        assert!(of([1e-3 * range, 2e-3 * range]).is_none());
     }
 }
