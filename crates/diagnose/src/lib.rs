@@ -64,6 +64,7 @@ pub mod compare;
 mod confirm;
 mod data;
 mod diagnosis;
+mod difference;
 mod error;
 mod evidence;
 mod gap;

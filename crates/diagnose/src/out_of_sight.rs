@@ -8,10 +8,11 @@ use simgap_effects::{Effect, Placed};
 use simgap_estimate::{Base, EstimateError, Start, score_outright};
 use simgap_model::{GROUND, Location};
 
+use crate::difference::{identified, replacement};
 use crate::evidence::{is_nominal, probabilities};
 use crate::hypothesis::{Hypothesis, add, name, remove, sort, unique};
 use crate::search::Search;
-use crate::verdict::{INDISTINGUISHABLE, Judged, Swap, identified, replacement};
+use crate::verdict::{INDISTINGUISHABLE, Judged, Swap};
 
 /// A nominal parameter on its own may be behind re-estimated ones by this evidence, and what turns into it is
 /// still looked for.

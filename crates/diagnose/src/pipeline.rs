@@ -9,6 +9,7 @@ use simgap_simulate::substeps_for;
 
 use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
+use crate::difference::{SEEN, is_told_from_none};
 use crate::evidence::{independence, is_nominal};
 use crate::gap::{Prediction, gap, predict};
 use crate::hypothesis::{Hypothesis, name, remove, sort};
@@ -17,7 +18,7 @@ use crate::out_of_sight::{add_rivals_out_of_sight, adjusted};
 use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
-use crate::verdict::{Judged, SEEN, is_told_from_none, judge, prune, simplest};
+use crate::verdict::{Judged, judge, prune, simplest};
 use crate::{DiagnoseError, Gap, answer, locate, stretches, unexplained};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
