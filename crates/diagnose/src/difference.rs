@@ -47,9 +47,14 @@ pub(crate) fn relevant_beyond_special_case(
 }
 
 fn moves(larger: &Fit, smaller: &Fit, least: impl Iterator<Item = f64>) -> bool {
+    let mut channels = moved(larger, smaller).zip(least);
+    channels.any(|(moved, least)| moved > least) && fall(smaller, larger) > RELEVANT
+}
+
+/// rms by which the predictions of each channel differ: `larger` fits better.
+fn moved(larger: &Fit, smaller: &Fit) -> impl Iterator<Item = f64> {
     let variances = smaller.variance.iter().zip(&larger.variance);
-    let moved = variances.map(|(poorer, better)| (poorer - better).max(0.0).sqrt());
-    moved.zip(least).any(|(moved, least)| moved > least) && fall(smaller, larger) > RELEVANT
+    variances.map(|(poorer, better)| (poorer - better).max(0.0).sqrt())
 }
 
 /// Relative fall of the squared discrepancy from a poorer fit to a better one, on the channel that
@@ -63,9 +68,8 @@ pub(crate) fn fall(poorer: &Fit, better: &Fit) -> f64 {
 
 /// Whether the effect closes a part of the gap that is worth a name.
 pub(crate) fn matters(search: &Search<'_>, set: &Hypothesis, subset: &Hypothesis) -> bool {
-    let variances = subset.fit.variance.iter().zip(&set.fit.variance);
-    let mut channels = variances.zip(&search.gap);
-    channels.any(|((poorer, better), gap)| (poorer - better).max(0.0).sqrt() > MATTERS * gap)
+    let mut channels = moved(&set.fit, &subset.fit).zip(&search.gap);
+    channels.any(|(moved, gap)| moved > MATTERS * gap)
 }
 
 /// Whether the effect that a subset lacks has a size that can be told from none.
@@ -73,10 +77,7 @@ pub(crate) fn identified(set: &Hypothesis, subset: &Hypothesis) -> bool {
     if fall(&subset.fit, &set.fit) > SEEN {
         return true;
     }
-    let kept = subset.key();
-    let effects = set.effects().iter().zip(&set.fit.intervals);
-    let mut lost = effects.filter(|(placed, _)| !kept.contains(&name(placed)));
-    lost.all(|(placed, intervals)| is_told_from_none(placed, intervals))
+    lacking(subset, set).all(|(placed, intervals)| is_told_from_none(placed, intervals))
 }
 
 /// Whether one of the parameters of an effect that have a neutral value is surely away from it.
@@ -115,13 +116,17 @@ pub(crate) fn discount(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypoth
 /// number of parameters, and by how far it takes the nominal ones. A nominal parameter in the place of a force is
 /// so judged as long as they differ by less than what counts as an effect.
 pub(crate) fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
-    let is_parameter = match (replacement(rival, set), replacement(set, rival)) {
-        (Some(old), Some(new)) => {
-            is_nominal(new) && !old.action().adds_mass() && same_place(&old.at, &new.at)
-        }
+    let new = replacement(set, rival);
+    let is_parameter = new.is_some_and(is_nominal);
+    let in_place_of_a_force = match (replacement(rival, set), new) {
+        (Some(old), Some(new)) => !old.action().adds_mass() && same_place(&old.at, &new.at),
         _ => false,
     };
-    let least = if is_parameter { SAME_AS_PARAMETER } else { 0.0 };
+    let least = if is_parameter && in_place_of_a_force {
+        SAME_AS_PARAMETER
+    } else {
+        0.0
+    };
     let std = search.problem.output_std();
     let off = search.accuracy.iter().zip(std);
     let variances = set.fit.variance.iter().zip(&rival.fit.variance);
@@ -129,7 +134,7 @@ pub(crate) fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesi
     if channels.all(|((own, its), off)| (own - its).abs().sqrt() < off) {
         let misfit = |set: &Hypothesis| set.fit.objective - pull(&set.fit.estimate);
         rival.evidence += misfit(rival) - misfit(set);
-        if replacement(set, rival).is_some_and(is_nominal) {
+        if is_parameter {
             // A set that took a place in this way has kept what it was given: so does a parameter in its place.
             rival.evidence += set.evidence - evidence(&set.fit, search.effective_samples);
         }
@@ -138,11 +143,19 @@ pub(crate) fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesi
 
 /// The effect of a rival set that the set lacks.
 pub(crate) fn replacement<'a>(set: &Hypothesis, rival: &'a Hypothesis) -> Option<&'a Placed> {
+    lacking(set, rival).next().map(|(placed, _)| placed)
+}
+
+/// The effects of another set that a set lacks, with their intervals.
+fn lacking<'a>(
+    set: &Hypothesis,
+    other: &'a Hypothesis,
+) -> impl Iterator<Item = (&'a Placed, &'a [Interval])> {
     let key = set.key();
-    rival
-        .effects()
-        .iter()
-        .find(|placed| !key.contains(&name(placed)))
+    let effects = other.effects().iter().zip(&other.fit.intervals);
+    effects
+        .filter(move |(placed, _)| !key.contains(&name(placed)))
+        .map(|(placed, intervals)| (placed, &intervals[..]))
 }
 
 /// By how much a set must lead one that names a parameter in the place of dynamics that turn into it and nothing
@@ -153,9 +166,7 @@ pub(crate) fn must_lead(
     dynamics: &Hypothesis,
     limit: &Hypothesis,
 ) -> Option<f64> {
-    let key = limit.key();
-    let mut each = dynamics.effects().iter().zip(&dynamics.fit.intervals);
-    let (hidden, intervals) = each.find(|(placed, _)| !key.contains(&name(placed)))?;
+    let (hidden, intervals) = lacking(limit, dynamics).next()?;
     turns_into((hidden.effect, &hidden.at), replacement(dynamics, limit)?)?;
     if hidden.effect.turns_into().len() != 1 {
         return None;

@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use simgap_effects::{Family, Placed};
 use simgap_estimate::{Candidate, Fit, Start};
 
+use crate::evidence::is_nominal;
+
 /// Prior of [`Weights::independent`](simgap_estimate::Weights::independent) on nominal parameters.
 pub(crate) const NOMINAL_PRIOR: f64 = 0.02;
 
@@ -18,6 +20,11 @@ pub(crate) struct Hypothesis {
 impl Hypothesis {
     pub(crate) fn effects(&self) -> &[Placed] {
         &self.fit.estimate.effects
+    }
+
+    /// Whether it names nominal parameters alone, or nothing.
+    pub(crate) fn is_of_parameters(&self) -> bool {
+        self.effects().iter().all(is_nominal)
     }
 
     /// The set, whatever the order in which its effects were found.

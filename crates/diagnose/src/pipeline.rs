@@ -18,7 +18,7 @@ use crate::out_of_sight::{add_rivals_out_of_sight, adjusted};
 use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
-use crate::verdict::{Judged, judge, prune, simplest};
+use crate::verdict::{Judged, earned, judge, prune, simplest};
 use crate::{DiagnoseError, Gap, answer, locate, stretches, unexplained};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
@@ -322,16 +322,11 @@ fn search(
 
     progress("verdict");
     let best = simplest(&search, finalists, &singles).unwrap_or(base);
-    let set = prune(&search, best)?;
-    // A rival that takes a place may turn out to earn none either.
-    let judged = if set.effects().is_empty() {
-        None
-    } else {
-        Some(judge(&search, set, MOST_SWAPS)?)
-    };
-    let judged = judged.filter(|(set, _)| !set.effects().is_empty());
-    let (mut set, mut judged) = if let Some(judged) = judged {
-        judged
+    let earned_by =
+        |set, is_answer: fn(&Hypothesis) -> bool| earned(&search, set, MOST_SWAPS, is_answer);
+    let answer = earned_by(best, |set| !set.effects().is_empty())?;
+    let (mut set, mut judged) = if let Some(answer) = answer {
+        answer
     } else {
         // Nothing beyond small errors of the nominal parameters: which of them are seen, when the
         // others are held exactly?
@@ -355,16 +350,12 @@ fn search(
         if scope == Scope::Everything {
             let sets = [&set, &settled];
             let better = add_rivals_out_of_sight(&search, sets, &nominal, &mut judged)?;
-            let better = better.map(|better| prune(&search, better)).transpose()?;
-            let more = |set: &Hypothesis| !set.effects().iter().all(is_nominal);
-            if let Some(better) = better.filter(more) {
+            let late = better.map(|set| earned_by(set, |set| !set.is_of_parameters()));
+            if let Some(answer) = late.transpose()?.flatten() {
                 // Found from where the parameters are known, it earns its place after all.
-                let better = judge(&search, better, MOST_SWAPS)?;
-                if more(&better.0) {
-                    (set, judged) = better;
-                    start = set.fit.estimate.clone();
-                    left = &set;
-                }
+                (set, judged) = answer;
+                start = set.fit.estimate.clone();
+                left = &set;
             }
         }
         remainder(&search, left)?

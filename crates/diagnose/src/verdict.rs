@@ -9,7 +9,7 @@ use crate::difference::{
     discount, fall, identified, level, matters, must_lead, relevant, relevant_beyond_special_case,
     replacement,
 };
-use crate::evidence::{freedom, is_nominal, probabilities};
+use crate::evidence::{freedom, probabilities};
 use crate::hypothesis::{Hypothesis, name, pull, remove, sort, unique};
 use crate::out_of_sight::turns_into;
 use crate::search::Search;
@@ -90,8 +90,7 @@ pub(crate) fn simplest(
 
 /// Whether a smaller set predicts as well as a larger one but for what a simulation may be off.
 fn does_as_well(search: &Search<'_>, larger: &Hypothesis, smaller: &Hypothesis) -> bool {
-    let of_parameters = smaller.effects().iter().all(is_nominal);
-    let holds = if of_parameters && is_under_prior(larger, smaller) {
+    let holds = if smaller.is_of_parameters() && is_under_prior(larger, smaller) {
         larger.evidence - smaller.evidence <= EARNS_AS_PARAMETER
     } else {
         pull(&smaller.fit.estimate) - pull(&larger.fit.estimate) < EARNS
@@ -173,6 +172,22 @@ fn is_under_prior(set: &Hypothesis, subset: &Hypothesis) -> bool {
     let mut lost = set.effects().iter().filter(|p| !kept.contains(&name(p)));
     let adjusted = &subset.fit.estimate.nominal;
     lost.all(|placed| adjusted.iter().any(|known| name(known) == name(placed)))
+}
+
+/// What is left of a set when it is pruned and judged, if it still is an answer; a rival that takes a place may turn
+/// out to earn none either.
+pub(crate) fn earned(
+    search: &Search<'_>,
+    set: Hypothesis,
+    most_swaps: usize,
+    is_answer: impl Fn(&Hypothesis) -> bool,
+) -> Result<Option<(Hypothesis, Vec<Judged>)>, EstimateError> {
+    let set = prune(search, set)?;
+    if !is_answer(&set) {
+        return Ok(None);
+    }
+    let judged = judge(search, set, most_swaps)?;
+    Ok(Some(judged).filter(|(set, _)| is_answer(set)))
 }
 
 /// Finds the rivals of each effect of a set and weighs them. Where a rival turns out better than
