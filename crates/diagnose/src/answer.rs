@@ -10,7 +10,7 @@ use crate::diagnosis::{
 };
 use crate::evidence::probabilities;
 use crate::gap::{predict, total};
-use crate::hypothesis::name;
+use crate::hypothesis::{Hypothesis, name};
 use crate::pipeline::Answer;
 use crate::stand_in::doubts;
 use crate::structure::describe;
@@ -215,39 +215,34 @@ fn sentences(judged: &Judged) -> Vec<String> {
     sentences
 }
 
-/// Single effects with their gap on the check records and their part in the answer.
-pub(crate) fn candidates(
+/// What the first single effects leave of the check records.
+pub(crate) fn held_back(
     check: &Problem,
-    answer: &Answer,
-    verdict: &Verdict,
+    singles: &[Hypothesis],
     weights: &Weights,
-) -> Result<Vec<CandidateResult>, EstimateError> {
-    let sets: Vec<Vec<Placed>> = answer
-        .singles
-        .iter()
-        .take(SHOWN)
+) -> Result<Vec<f64>, EstimateError> {
+    let shown = &singles[..singles.len().min(SHOWN)];
+    shown
+        .par_iter()
         .map(|single| {
             let estimate = &single.fit.estimate;
-            estimate
-                .effects
-                .iter()
-                .chain(&estimate.nominal)
-                .cloned()
-                .collect()
+            let set = estimate.effects.iter().chain(&estimate.nominal);
+            let set: Vec<Placed> = set.cloned().collect();
+            Ok(total(&predict(check, &set, weights)?.nrmse))
         })
-        .collect();
-    let gaps = sets
-        .par_iter()
-        .map(|set| Ok(total(&predict(check, set, weights)?.nrmse)))
-        .collect::<Result<Vec<f64>, EstimateError>>()?;
-    let mut results: Vec<CandidateResult> = sets
-        .iter()
-        .zip(gaps)
-        .map(|(set, held_back_gap)| CandidateResult {
-            kind: set[0].effect.kind().to_string(),
-            at: set[0].at.clone(),
+        .collect()
+}
+
+/// Single effects with their gap on the check records and their part in the answer.
+pub(crate) fn candidates(answer: &Answer, verdict: &Verdict) -> Vec<CandidateResult> {
+    let singles = answer.singles.iter().map(|single| &single.effects()[0]);
+    let mut results: Vec<CandidateResult> = singles
+        .zip(&answer.held_back)
+        .map(|(placed, &held_back_gap)| CandidateResult {
+            kind: placed.effect.kind().to_string(),
+            at: placed.at.clone(),
             held_back_gap,
-            probability: probability(answer, verdict, &set[0]),
+            probability: probability(answer, verdict, placed),
         })
         .collect();
     results.sort_by(|a, b| {
@@ -255,7 +250,7 @@ pub(crate) fn candidates(
             .total_cmp(&a.probability)
             .then(a.held_back_gap.total_cmp(&b.held_back_gap))
     });
-    Ok(results)
+    results
 }
 
 /// Probability that an effect belongs to the cause: its own where it is named, what it holds

@@ -4,7 +4,7 @@
 //! differ by less are told by the number of their parameters, or by how far they take the nominal ones.
 
 use simgap_effects::{Placed, same_place};
-use simgap_estimate::{Fit, Interval};
+use simgap_estimate::{EstimateError, Fit, Interval, fit_initial_states};
 
 use crate::evidence::{evidence, is_nominal};
 use crate::hypothesis::{Hypothesis, name, pull};
@@ -24,6 +24,14 @@ const MOVES_ALIKE: f64 = 2.0;
 /// A nominal parameter and a force in its place are the same as long as they differ by less than this share of
 /// the motion.
 const SAME_AS_PARAMETER: f64 = 1.5e-3;
+/// What lowers the squared discrepancy by less than [`RELEVANT`] is an effect all the same where it is the only one:
+/// by this evidence, with this multiple of what a simulation may be off, and if it does this part of the gap itself
+/// that re-estimated parameters could have done nearly as well.
+const SURE: f64 = 12.0;
+/// See [`SURE`].
+const SURELY_MOVES: f64 = 4.0;
+/// See [`SURE`].
+const DOES: f64 = 0.1;
 /// An effect without which the squared discrepancy of a channel would be more than twice as large is seen, even
 /// where only its size and its state at the start together are.
 pub(crate) const SEEN: f64 = 0.5;
@@ -34,6 +42,28 @@ const MATTERS: f64 = 0.015;
 pub(crate) fn relevant(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool {
     let least = search.problem.output_std().into_iter();
     moves(larger, smaller, least.map(|std| MOVES * std))
+}
+
+/// Whether a single effect is one although parameters alone, bent within what is known of them, leave little for it:
+/// noise and inaccurate simulation leave much less.
+pub(crate) fn is_sure(
+    search: &Search<'_>,
+    single: &Hypothesis,
+    parameters: &Hypothesis,
+) -> Result<bool, EstimateError> {
+    let least = search.accuracy.iter().map(|off| SURELY_MOVES * off);
+    let mut moved = moved(&single.fit, &parameters.fit).zip(least);
+    if !parameters.effects().is_empty()
+        || single.evidence - parameters.evidence < SURE
+        || !moved.any(|(moved, least)| moved > least)
+    {
+        return Ok(false);
+    }
+    // Without it and with nothing else changed.
+    let others = &single.fit.estimate.nominal;
+    let without = fit_initial_states(search.problem, others, &search.weights)?;
+    let mut does = self::moved(&single.fit, &without).zip(&search.gap);
+    Ok(does.any(|(does, gap)| does > DOES * gap))
 }
 
 /// The same where `smaller` has a special case of the law in its place.

@@ -67,6 +67,7 @@ mod diagnosis;
 mod difference;
 mod error;
 mod evidence;
+mod final_fit;
 mod gap;
 mod hypothesis;
 mod locate;

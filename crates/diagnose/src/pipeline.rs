@@ -11,6 +11,7 @@ use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::difference::{SEEN, is_told_from_none};
 use crate::evidence::{independence, is_nominal};
+use crate::final_fit::fit_to_all;
 use crate::gap::{Prediction, gap, predict};
 use crate::hypothesis::{Hypothesis, name, remove, sort};
 use crate::locate::Located;
@@ -75,6 +76,8 @@ pub(crate) struct Answer {
     pub(crate) remainder: Remainder,
     /// Single effects, best first.
     pub(crate) singles: Vec<Hypothesis>,
+    /// What the first of them leave of the check records.
+    pub(crate) held_back: Vec<f64>,
     /// Without any effect, nominal parameters as given.
     pub(crate) nominal: Fit,
     /// Whether the set leaves nothing but noise of the check records where it starts anew in every stretch.
@@ -167,6 +170,10 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         predictions[2] = predict(&check, &placed, &plain)?;
         gap = gap_of(&placed, &predictions);
     }
+    answer.held_back = {
+        let short = check.with_runs(excerpts(&check.runs));
+        answer::held_back(&short, &answer.singles, &plain)?
+    };
     let mut verdict = answer::verdict(&train, &answer, &gap);
     let left_unknown = verdict.status == crate::Status::Unknown;
     let (gap, placed, shown) = if left_unknown {
@@ -178,10 +185,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     } else {
         (gap, placed, 2)
     };
-    let candidates = {
-        let short = check.with_runs(excerpts(&check.runs));
-        answer::candidates(&short, &answer, &verdict, &plain)?
-    };
+    let candidates = answer::candidates(&answer, &verdict);
     let floors: Vec<f64> = gap.channels.iter().map(|c| c.noise_floor).collect();
     let located = Located::new(&check, &predictions[0], &floors);
     let motions = locate::motions(&check, &predictions[0], &locate_places(request.model))?;
@@ -365,14 +369,14 @@ fn search(
 
     // The answer, on all samples.
     progress("final fit");
-    start.initial = nominal.estimate.initial.clone();
     let weights = Weights {
         converged: plain.converged,
         keep_nuisance: false,
         most_steps: plain.most_steps,
         ..search.weights.clone()
     };
-    let mut estimate = fit(train, &start, &weights)?;
+    let as_given = &nominal.estimate.initial;
+    let mut estimate = fit_to_all(train, &short, &start, as_given, &weights)?;
     // What the search saw on its excerpt, all samples may not tell from nothing.
     while let Some(i) = first_unseen(&estimate, &judged) {
         judged.remove(i);
@@ -385,6 +389,7 @@ fn search(
         judged,
         remainder,
         singles,
+        held_back: vec![],
         nominal: nominal.clone(),
         follows_anew: false,
     })

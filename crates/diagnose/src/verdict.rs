@@ -6,8 +6,8 @@ use simgap_estimate::{EstimateError, Start};
 
 use crate::confirm::confirmed;
 use crate::difference::{
-    discount, fall, identified, level, matters, must_lead, relevant, relevant_beyond_special_case,
-    replacement,
+    discount, fall, identified, is_sure, level, matters, must_lead, relevant,
+    relevant_beyond_special_case, replacement,
 };
 use crate::evidence::{freedom, probabilities};
 use crate::hypothesis::{Hypothesis, name, pull, remove, sort, unique};
@@ -17,6 +17,8 @@ use crate::search::Search;
 /// Evidence an effect must bring beyond its own penalty. Calibrated on generated cases so that
 /// noise alone earns an effect in fewer than one case in twenty.
 pub(crate) const EARNS: f64 = 6.0;
+/// The same of a law beyond a special case of it: that there is something, both say.
+const EARNS_SHAPE: f64 = 3.0;
 /// A rival whose evidence is this close cannot be told from the named effect.
 pub(crate) const INDISTINGUISHABLE: f64 = 4.0;
 /// A rival must lead by this much to take a place: less is the accuracy of the fits.
@@ -148,14 +150,18 @@ fn earns(
         // The subset predicts as well: what it lacks is only how far the parameter may go.
         return Ok(brings > EARNS_AS_PARAMETER);
     }
-    if brings < EARNS || !identified(set, subset) {
+    let shrunk = set.effects().len() == subset.effects().len();
+    let least = if shrunk { EARNS_SHAPE } else { EARNS };
+    if brings < least || !identified(set, subset) {
         return Ok(false);
     }
     if pull(&subset.fit.estimate) - pull(&set.fit.estimate) > EARNS {
         // Nominal parameters can take its part, but only far from where they are known to be.
         return Ok(true);
     }
-    let shrunk = set.effects().len() == subset.effects().len();
+    if is_sure(search, set, subset)? {
+        return Ok(true);
+    }
     let is_relevant = if shrunk {
         relevant_beyond_special_case(search, &set.fit, &subset.fit)
     } else {

@@ -103,6 +103,27 @@ fn verify_a_support_is_not_taken_for_two_parameters() {
     assert!((found / values[0] - 1.0).abs() < 0.2, "{found}");
 }
 
+/// A weak spring that the model lacks is a little more of every other spring, and a little more of the input: within
+/// what is known of them these leave hardly anything for it.
+#[test]
+fn verify_a_weak_spring_is_not_put_down_to_what_is_known() {
+    let at = Location::Between(["top".into(), "ground".into()]);
+    let between = Location::Between(["top".into(), "base".into()]);
+    for stiffness in [45.0, -45.0] {
+        let truth = [
+            placed("linear_stiffness", at.clone(), &[stiffness]),
+            placed("stiffness_error", ground(), &[0.99]),
+            placed("stiffness_error", between.clone(), &[1.008]),
+        ];
+        let outcome = diagnosed(&truth, &[]);
+        println!(
+            "{:?} {:?}",
+            outcome.diagnosis.verdict, outcome.diagnosis.gap
+        );
+        assert_eq!(named(&outcome), [("linear_stiffness".into(), at.clone())]);
+    }
+}
+
 /// A mass on a spring that no record shows swinging is as good as a heavier mass, and has more to say for itself.
 #[test]
 fn verify_a_heavier_mass_is_not_taken_for_one_on_a_spring() {

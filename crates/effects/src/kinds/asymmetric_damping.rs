@@ -82,6 +82,14 @@ impl Effect for AsymmetricDamping {
         vec![vec![damping, -damping]]
     }
 
+    fn contains(&self) -> &'static [&'static str] {
+        &["viscous_damping"]
+    }
+
+    fn grown_from(&self, _: &str, values: &[f64], _: &SiteScale) -> Vec<Vec<f64>> {
+        vec![vec![values[0], values[0]]]
+    }
+
     fn action(&self, values: &[f64]) -> Action {
         Action::Force(Box::new(Law {
             forward: values[0],
