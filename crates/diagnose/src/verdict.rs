@@ -25,6 +25,8 @@ pub(crate) const INDISTINGUISHABLE: f64 = 4.0;
 const TIE: f64 = 0.5;
 /// A rival with fewer parameters may be less likely by this much and still take the place.
 const SIMPLER: f64 = 2.0;
+/// Not where it takes the other nominal parameters further by this, in log-likelihood: they would have to be named.
+const BENDS: f64 = 4.0;
 /// Rivals fitted for each named effect.
 const RIVALS: usize = 8;
 /// Evidence that a nominal parameter must bring beyond what it brings under its prior: the square of
@@ -235,6 +237,11 @@ fn judge_once(
     Ok((list, better))
 }
 
+/// How much further a rival takes the nominal parameters under their prior.
+fn bends(rival: &Hypothesis, set: &Hypothesis) -> f64 {
+    pull(&rival.fit.estimate) - pull(&set.fit.estimate)
+}
+
 /// Rivals of one effect, and the best of them where it beats the set.
 fn judge_effect(
     search: &Search<'_>,
@@ -295,7 +302,7 @@ fn judge_effect(
             -lead
         } else if let Some(lead) = must_lead(search, rival, set) {
             lead
-        } else if freedom(&rival.fit) < freedom(&set.fit) {
+        } else if freedom(&rival.fit) < freedom(&set.fit) && bends(rival, set) < BENDS {
             -SIMPLER
         } else {
             TIE
