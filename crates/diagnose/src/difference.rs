@@ -7,7 +7,7 @@ use simgap_effects::{Placed, same_place};
 use simgap_estimate::{EstimateError, Fit, Interval, fit_initial_states};
 
 use crate::evidence::{evidence, is_nominal};
-use crate::hypothesis::{Hypothesis, name, pull};
+use crate::hypothesis::{Hypothesis, bends, name, pull};
 use crate::out_of_sight::turns_into;
 use crate::search::Search;
 use crate::stand_in::is_unseen;
@@ -44,28 +44,6 @@ pub(crate) fn relevant(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool
     moves(larger, smaller, least.map(|std| MOVES * std))
 }
 
-/// Whether a single effect is one although parameters alone, bent within what is known of them, leave little for it:
-/// noise and inaccurate simulation leave much less.
-pub(crate) fn is_sure(
-    search: &Search<'_>,
-    single: &Hypothesis,
-    parameters: &Hypothesis,
-) -> Result<bool, EstimateError> {
-    let least = search.accuracy.iter().map(|off| SURELY_MOVES * off);
-    let mut moved = moved(&single.fit, &parameters.fit).zip(least);
-    if !parameters.effects().is_empty()
-        || single.evidence - parameters.evidence < SURE
-        || !moved.any(|(moved, least)| moved > least)
-    {
-        return Ok(false);
-    }
-    // Without it and with nothing else changed.
-    let others = &single.fit.estimate.nominal;
-    let without = fit_initial_states(search.problem, others, &search.weights)?;
-    let mut does = self::moved(&single.fit, &without).zip(&search.gap);
-    Ok(does.any(|(does, gap)| does > DOES * gap))
-}
-
 /// The same where `smaller` has a special case of the law in its place.
 pub(crate) fn relevant_beyond_special_case(
     search: &Search<'_>,
@@ -94,6 +72,28 @@ pub(crate) fn fall(poorer: &Fit, better: &Fit) -> f64 {
     ratios
         .map(|(p, b)| 1.0 - b / p.max(f64::MIN_POSITIVE))
         .fold(f64::MIN, f64::max)
+}
+
+/// Whether a single effect is one although parameters alone, bent within what is known of them, leave little for it:
+/// noise and inaccurate simulation leave much less.
+pub(crate) fn is_sure(
+    search: &Search<'_>,
+    single: &Hypothesis,
+    parameters: &Hypothesis,
+) -> Result<bool, EstimateError> {
+    let least = search.accuracy.iter().map(|off| SURELY_MOVES * off);
+    let mut channels = moved(&single.fit, &parameters.fit).zip(least);
+    if !parameters.effects().is_empty()
+        || single.evidence - parameters.evidence < SURE
+        || !channels.any(|(moved, least)| moved > least)
+    {
+        return Ok(false);
+    }
+    // Without it and with nothing else changed.
+    let others = &single.fit.estimate.nominal;
+    let without = fit_initial_states(search.problem, others, &search.weights)?;
+    let mut channels = moved(&single.fit, &without).zip(&search.gap);
+    Ok(channels.any(|(does, gap)| does > DOES * gap))
 }
 
 /// Whether the effect closes a part of the gap that is worth a name.
@@ -201,8 +201,7 @@ pub(crate) fn must_lead(
     if hidden.effect.turns_into().len() != 1 {
         return None;
     }
-    let further = pull(&limit.fit.estimate) - pull(&dynamics.fit.estimate);
-    if further < EARNS && !relevant(search, &dynamics.fit, &limit.fit) {
+    if bends(limit, dynamics) < EARNS && !relevant(search, &dynamics.fit, &limit.fit) {
         return Some(f64::INFINITY);
     }
     let parameters = hidden.effect.parameters().iter().zip(intervals);

@@ -109,6 +109,11 @@ pub(crate) fn pull(start: &Start) -> f64 {
     start.nominal.iter().map(pull_of).sum()
 }
 
+/// How much further a set takes the nominal parameters under their prior than another does, by [`pull`].
+pub(crate) fn bends(set: &Hypothesis, other: &Hypothesis) -> f64 {
+    pull(&set.fit.estimate) - pull(&other.fit.estimate)
+}
+
 pub(crate) fn pull_of(placed: &Placed) -> f64 {
     let deviations = placed.values.iter();
     deviations

@@ -287,9 +287,11 @@ impl<'a> Search<'a> {
         let adds_mass = |start: &&Start| start.effects.iter().any(|p| p.action().adds_mass());
         let (winding, direct): (Vec<&Start>, Vec<&Start>) = starts.iter().partition(adds_mass);
         let mut fitted = fit(&direct, most_steps);
-        let is_told = fitted.iter().any(|set| self.is_exhausted(set));
-        let factor = if is_told { 1 } else { WINDING };
-        fitted.extend(fit(&winding, factor * most_steps));
+        if !winding.is_empty() {
+            let is_told = fitted.iter().any(|set| self.is_exhausted(set));
+            let factor = if is_told { 1 } else { WINDING };
+            fitted.extend(fit(&winding, factor * most_steps));
+        }
         fitted.retain(|set| set.fit.objective.is_finite() && self.means_what_it_says(set));
         sort(&mut fitted);
         unique(&mut fitted);

@@ -10,7 +10,7 @@ use crate::difference::{
     relevant_beyond_special_case, replacement,
 };
 use crate::evidence::{freedom, probabilities};
-use crate::hypothesis::{Hypothesis, name, pull, remove, sort, unique};
+use crate::hypothesis::{Hypothesis, bends, name, remove, sort, unique};
 use crate::out_of_sight::turns_into;
 use crate::search::Search;
 
@@ -97,7 +97,7 @@ fn does_as_well(search: &Search<'_>, larger: &Hypothesis, smaller: &Hypothesis) 
     let holds = if smaller.is_of_parameters() && is_under_prior(larger, smaller) {
         larger.evidence - smaller.evidence <= EARNS_AS_PARAMETER
     } else {
-        pull(&smaller.fit.estimate) - pull(&larger.fit.estimate) < EARNS
+        bends(smaller, larger) < EARNS
     };
     holds && !relevant(search, &larger.fit, &smaller.fit)
 }
@@ -157,11 +157,8 @@ fn earns(
     if brings < least || !identified(set, subset) {
         return Ok(false);
     }
-    if pull(&subset.fit.estimate) - pull(&set.fit.estimate) > EARNS {
+    if bends(subset, set) > EARNS {
         // Nominal parameters can take its part, but only far from where they are known to be.
-        return Ok(true);
-    }
-    if is_sure(search, set, subset)? {
         return Ok(true);
     }
     let is_relevant = if shrunk {
@@ -169,9 +166,10 @@ fn earns(
     } else {
         relevant(search, &set.fit, &subset.fit)
     };
-    Ok(is_relevant
+    let is_told = is_relevant
         && (shrunk || matters(search, set, subset))
-        && (set.effects().len() < 2 || confirmed(search, set, subset)?))
+        && (set.effects().len() < 2 || confirmed(search, set, subset)?);
+    Ok(is_told || is_sure(search, set, subset)?)
 }
 
 /// Whether the effect that a subset lacks is a nominal parameter that it still adjusts.
@@ -235,11 +233,6 @@ fn judge_once(
         }
     });
     Ok((list, better))
-}
-
-/// How much further a rival takes the nominal parameters under their prior.
-fn bends(rival: &Hypothesis, set: &Hypothesis) -> f64 {
-    pull(&rival.fit.estimate) - pull(&set.fit.estimate)
 }
 
 /// Rivals of one effect, and the best of them where it beats the set.

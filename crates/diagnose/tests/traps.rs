@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{diagnosed, ground, named, placed};
+use common::{diagnosed, diagnosed_at, ground, named, placed};
 use simgap_diagnose::Status;
 use simgap_model::Location;
 
@@ -109,17 +109,13 @@ fn verify_a_support_is_not_taken_for_two_parameters() {
 fn verify_a_weak_spring_is_not_put_down_to_what_is_known() {
     let at = Location::Between(["top".into(), "ground".into()]);
     let between = Location::Between(["top".into(), "base".into()]);
-    for stiffness in [45.0, -45.0] {
+    for stiffness in [16.0, -16.0] {
         let truth = [
             placed("linear_stiffness", at.clone(), &[stiffness]),
             placed("stiffness_error", ground(), &[0.99]),
             placed("stiffness_error", between.clone(), &[1.008]),
         ];
-        let outcome = diagnosed(&truth, &[]);
-        println!(
-            "{:?} {:?}",
-            outcome.diagnosis.verdict, outcome.diagnosis.gap
-        );
+        let outcome = diagnosed_at(&truth, &[], 2e-3);
         assert_eq!(named(&outcome), [("linear_stiffness".into(), at.clone())]);
     }
 }

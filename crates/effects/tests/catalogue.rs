@@ -340,6 +340,7 @@ fn verify_special_cases_are_in_the_catalogue_at_the_same_places() {
             assert_ne!(special.kind(), effect.kind(), "{place}");
             let wide = simgap_effects::sites(&model, effect.site());
             let narrow = simgap_effects::sites(&model, special.site());
+            assert!(!narrow.is_empty(), "{place}: nowhere");
             assert!(narrow.iter().all(|at| wide.contains(at)), "{place}");
             assert!(
                 special.contains().is_empty(),

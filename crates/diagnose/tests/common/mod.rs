@@ -7,6 +7,7 @@ use simgap_record::{Channel, Record};
 use simgap_simulate::{Run, Simulator};
 
 const FINER: usize = 4;
+const DURATION_S: f64 = 10.0;
 /// Noise over the spread of a channel.
 const NOISE: f64 = 0.01;
 
@@ -126,7 +127,13 @@ pub(crate) fn record(effects: &[Placed], number: u64, rows: usize, step_s: f64) 
 
 /// Diagnoses two records of a machine, checked on a third.
 pub(crate) fn diagnosed(effects: &[Placed], withheld: &[&str]) -> Outcome {
-    let records: Vec<Record> = (1..4).map(|k| record(effects, k, 2500, 4e-3)).collect();
+    diagnosed_at(effects, withheld, 4e-3)
+}
+
+/// The same of records that are sampled in steps of so many seconds.
+pub(crate) fn diagnosed_at(effects: &[Placed], withheld: &[&str], step_s: f64) -> Outcome {
+    let rows = (DURATION_S / step_s).round() as usize;
+    let records: Vec<Record> = (1..4).map(|k| record(effects, k, rows, step_s)).collect();
     let withheld: Vec<String> = withheld.iter().map(ToString::to_string).collect();
     let request = Request {
         model: &plant(),
