@@ -6,14 +6,15 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// The steps of a diagnosis and how much of its time has passed at their end: the mean of the demo,
-/// of its first record alone and of the tutorial. Steps that are left out are jumped; the shares of the two
-/// that are seldom (`from afar`, `exact parameters`) are guessed.
-const STEPS: [(&str, f64); 10] = [
+/// of its first record alone and of the tutorial. Steps that are left out are jumped; the shares of the
+/// three that are seldom (`from afar`, `in stretches`, `exact parameters`) are guessed.
+const STEPS: [(&str, f64); 11] = [
     ("nominal model", 0.02),
     ("single effects", 0.20),
     ("single effects from afar", 0.24),
     ("pairs of effects", 0.62),
     ("sets of three", 0.70),
+    ("single effects in stretches", 0.72),
     ("finalists", 0.80),
     ("verdict", 0.94),
     ("exact parameters", 0.95),

@@ -16,8 +16,9 @@ use simgap_record::Record;
 #[divan::bench(args = [15_000, 60_000], sample_count = 3, sample_size = 1)]
 fn whole_diagnosis(bencher: divan::Bencher<'_, '_>, rows: usize) {
     let truth = [placed("coulomb_friction", ground(), &[1.5])];
-    let records: Vec<Record> = (1..4).map(|k| record(&truth, k, rows, 1e-3)).collect();
     let model = plant();
+    let of_number = |k| record(&model, &truth, k, rows, 1e-3);
+    let records: Vec<Record> = (1..4).map(of_number).collect();
     let request = Request {
         model: &model,
         train: &records[..2],

@@ -60,6 +60,7 @@
 mod accuracy;
 mod afar;
 mod answer;
+mod common_cause;
 pub mod compare;
 mod confirm;
 mod data;
@@ -77,6 +78,7 @@ mod parity;
 mod pipeline;
 mod remainder;
 mod search;
+mod shooting;
 mod stand_in;
 mod stretches;
 mod structure;

@@ -32,6 +32,8 @@ const FINISHED: usize = 12;
 /// A squared discrepancy within this factor of white noise leaves no room for a relevant effect; the
 /// estimate of the noise scatters by three percent.
 const NOTHING_LEFT: f64 = 1.06;
+/// What leaves less than this multiple of the squared noise explains the records.
+const EXPLAINED: f64 = 1.15;
 /// Pull of the prior above which a nominal parameter may have to be named.
 const WISH: f64 = 4.0;
 /// Where parameters alone close more than all but this part of a gap, the rest counts as if it were the
@@ -123,7 +125,7 @@ impl<'a> Search<'a> {
         Ok(self.hypothesis(fit(self.problem, start, &self.weights)?))
     }
 
-    fn hypothesis(&self, fit: Fit) -> Hypothesis {
+    pub(crate) fn hypothesis(&self, fit: Fit) -> Hypothesis {
         let evidence = evidence(&fit, self.effective_samples);
         Hypothesis { fit, evidence }
     }
@@ -138,7 +140,7 @@ impl<'a> Search<'a> {
         self.extend_at(base, &linear, most)
     }
 
-    fn extend_at(
+    pub(crate) fn extend_at(
         &self,
         base: &Hypothesis,
         linear: &Base<'_>,
@@ -292,18 +294,20 @@ impl<'a> Search<'a> {
             let factor = if is_told { 1 } else { WINDING };
             fitted.extend(fit(&winding, factor * most_steps));
         }
-        fitted.retain(|set| set.fit.objective.is_finite() && self.means_what_it_says(set));
+        fitted.retain(|set| self.is_hypothesis(set));
         sort(&mut fitted);
         unique(&mut fitted);
         Ok(fitted)
     }
 
-    fn means_what_it_says(&self, set: &Hypothesis) -> bool {
+    /// Whether a set can be simulated and means what it says.
+    pub(crate) fn is_hypothesis(&self, set: &Hypothesis) -> bool {
         let mut effects = set.effects().iter();
-        effects.all(|placed| {
-            self.scale_at(&placed.at)
-                .is_none_or(|scale| placed.effect.keeps_its_meaning(&placed.values, &scale))
-        })
+        set.fit.objective.is_finite()
+            && effects.all(|placed| {
+                self.scale_at(&placed.at)
+                    .is_none_or(|scale| placed.effect.keeps_its_meaning(&placed.values, &scale))
+            })
     }
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.
@@ -362,14 +366,16 @@ impl<'a> Search<'a> {
     /// Whether a set leaves nothing but white noise: no further effect could lower the squared
     /// discrepancy by what makes it relevant. A nominal parameter far from its value leaves a wish.
     fn is_exhausted(&self, set: &Hypothesis) -> bool {
-        if pull(&set.fit.estimate) > WISH {
-            return false;
-        }
+        pull(&set.fit.estimate) <= WISH && self.leaves_less(set, NOTHING_LEFT)
+    }
+
+    /// Whether a set leaves less than a multiple of the squared noise of every channel.
+    pub(crate) fn leaves_less(&self, set: &Hypothesis, factor: f64) -> bool {
         let stepped = crate::gap::stepped(self.problem, set.effects());
         let noise = crate::gap::noise_variance(&set.fit.discrepancy, &stepped);
         let left = set.fit.variance.iter().zip(noise);
         left.into_iter()
-            .all(|(variance, noise)| *variance < NOTHING_LEFT * noise)
+            .all(|(variance, noise)| *variance < factor * noise)
     }
 
     /// Sets of one, two and three effects that were fitted, best first.
@@ -402,6 +408,18 @@ impl<'a> Search<'a> {
             unique(&mut next);
             pool.extend(next.iter().cloned());
             front = next;
+        }
+        if !pool.iter().any(|set| self.leaves_less(set, EXPLAINED)) {
+            step("single effects in stretches");
+            // Where stretches cannot be simulated, nothing is found in them.
+            let found = self.fit_by_shooting(base).unwrap_or_default();
+            let leads = |set: &Hypothesis| pool.iter().all(|known| known.evidence < set.evidence);
+            let best = found
+                .first()
+                .filter(|set| leads(set) && !self.is_exhausted(set));
+            let beside = best.map(|set| self.extend(set, FITTED[1])).transpose()?;
+            pool.extend(beside.unwrap_or_default());
+            pool.extend(found);
         }
         sort(&mut pool);
         unique(&mut pool);

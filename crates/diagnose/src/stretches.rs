@@ -4,6 +4,8 @@
 //! the true model goes another way than the machine. Started anew from what was measured it follows for a while;
 //! a wrong law does not.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Problem, Weights};
@@ -50,11 +52,17 @@ pub(crate) fn told(gap: &Gap) -> String {
     )
 }
 
-fn stretches(run: &Run) -> Vec<Run> {
-    let count = (run.len / SHORTEST).clamp(1, MOST_STRETCHES);
-    let bounds = |k: usize| k * run.len / count;
-    let each = 0..count;
-    each.map(|k| run.slice(bounds(k)..bounds(k + 1))).collect()
+fn stretches(run: &Run) -> impl Iterator<Item = Run> + '_ {
+    bounds(run.len, SHORTEST, MOST_STRETCHES)
+        .into_iter()
+        .map(|samples| run.slice(samples))
+}
+
+/// The samples of each stretch of a record, of `shortest` or more and `most` stretches or fewer.
+pub(crate) fn bounds(len: usize, shortest: usize, most: usize) -> Vec<Range<usize>> {
+    let count = (len / shortest).clamp(1, most);
+    let bound = |k: usize| k * len / count;
+    (0..count).map(|k| bound(k)..bound(k + 1)).collect()
 }
 
 #[cfg(test)]
@@ -100,7 +108,7 @@ mod tests {
                 inputs: vec![vec![1.0; len]],
                 measured: vec![None],
             };
-            let cut = stretches(&run);
+            let cut: Vec<Run> = stretches(&run).collect();
             assert_eq!(cut.len(), count, "{len}");
             assert_eq!(cut.iter().map(|part| part.len).sum::<usize>(), len);
             assert!(len < SHORTEST || cut.iter().all(|part| part.len >= SHORTEST));

@@ -2,8 +2,9 @@
 //! looks like the work of something else.
 
 use simgap_effects::{Action, Family, Placed};
-use simgap_estimate::{Interval, Problem};
+use simgap_estimate::Problem;
 
+use crate::common_cause::on_every_channel;
 use crate::diagnosis::{Gap, Status};
 use crate::gap::{closed, total};
 use crate::hypothesis::{Hypothesis, name};
@@ -31,8 +32,6 @@ const ANOTHER_LAW: f64 = 0.3;
 /// Share of the gap on the check records that a name which may be a stand-in may leave: with less, it
 /// serves as well as the law it stands in for.
 const STAND_IN_LEAVES: f64 = 0.03;
-/// Values within this share of each other are the same.
-const ALIKE: f64 = 0.01;
 /// Effects that close less than [`CLOSES`] of the gap on the check records, and less than this of what
 /// parameters alone leave, are of no use.
 const OF_SOME_USE: f64 = 0.3;
@@ -61,7 +60,11 @@ pub(crate) fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: S
         || leaves_of_both(answer, gap)
         || is_poor_stand_in(answer, gap) && !answer.follows_anew
         || is_of_no_use(answer, gap, status)
-        || on_every_channel(train, answer)
+        || {
+            let all = answer.judged.iter().zip(&answer.estimate.intervals);
+            let named = all.map(|(judged, intervals)| (&judged.placed, &intervals[..]));
+            on_every_channel(train, &named.collect::<Vec<_>>())
+        }
     {
         return true;
     }
@@ -234,32 +237,4 @@ fn is_of_no_use(answer: &Answer, gap: &Gap, status: Status) -> bool {
         && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < OF_SOME_USE
         && !explains_all_it_saw(answer, gap)
         && !answer.follows_anew
-}
-
-/// Whether the same effect of the measurement chain, with the same values, is named on every one of several
-/// channels: its cause is common to them, and lies before the sensors.
-fn on_every_channel(train: &Problem, answer: &Answer) -> bool {
-    let channels = train.model.outputs.len();
-    let of_kind = |kind: &str| {
-        let all = answer.judged.iter().zip(&answer.estimate.intervals);
-        let same = all.filter(|(judged, _)| judged.placed.effect.kind() == kind);
-        same.map(|(_, intervals)| intervals).collect::<Vec<_>>()
-    };
-    let mut smooth = answer
-        .named()
-        .filter(|placed| matches!(placed.action(), Action::Output(_)));
-    channels > 1
-        && smooth.any(|placed| {
-            let on = of_kind(placed.effect.kind());
-            on.len() == channels && on.windows(2).all(|pair| agree(pair[0], pair[1]))
-        })
-}
-
-/// Whether the values of two effects of a kind are the same, or may be.
-fn agree(one: &[Interval], other: &[Interval]) -> bool {
-    let mut both = one.iter().zip(other);
-    both.all(|(a, b)| {
-        let apart = (a.value - b.value).abs();
-        apart <= ALIKE * a.value.abs() || a.ci95[0] <= b.ci95[1] && b.ci95[0] <= a.ci95[1]
-    })
 }

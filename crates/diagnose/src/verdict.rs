@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use simgap_effects::{Equivalent, Placed, SiteScale, same_place};
 use simgap_estimate::{EstimateError, Start};
 
+use crate::common_cause::is_common_cause;
 use crate::confirm::confirmed;
 use crate::difference::{
     discount, fall, identified, is_sure, level, matters, must_lead, relevant,
@@ -78,7 +79,10 @@ pub(crate) fn simplest(
     loop {
         let size = |set: &Hypothesis| set.effects().len();
         let smaller = finalists.iter().chain(singles).filter(|set| {
-            let does = |larger| size(set) < size(larger) && does_as_well(search, larger, set);
+            let does = |larger| {
+                size(set) < size(larger)
+                    && (does_as_well(search, larger, set) || is_common_cause(search, set, larger))
+            };
             does(best) && does(simplest)
         });
         let next = smaller.max_by(|a, b| {

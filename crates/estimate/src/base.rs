@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use faer::linalg::solvers::Solve;
+use faer::linalg::solvers::{FullPivLu, Solve};
 use faer::{Mat, Side};
 use simgap_effects::Placed;
 use simgap_simulate::{Job, predict_all};
@@ -25,7 +25,8 @@ pub struct Base<'a> {
     pub(crate) at: Linearised,
     reach: Reach,
     pub(crate) weights: Vec<f64>,
-    pub(crate) hessian: Mat<f64>,
+    /// Of H; without where nothing may be adjusted.
+    factor: Option<FullPivLu<f64>>,
     pub(crate) gradient: Vec<f64>,
     pub(crate) independent_samples: f64,
     /// rᵀWr of (2) of [`score`](crate::score()).
@@ -66,7 +67,7 @@ pub fn linearise_at<'a>(
         at,
         reach,
         weights: channel_weights,
-        hessian,
+        factor: factorise(&hessian),
         gradient,
         independent_samples: count * weights.independence.iter().sum::<f64>(),
     })
@@ -204,18 +205,23 @@ impl Base<'_> {
 
     /// H⁻¹ times columns of JᵀW.
     fn past_nuisance(&self, right: &Mat<f64>) -> Mat<f64> {
-        let len = self.layout.len();
-        if len == 0 {
-            return Mat::zeros(0, right.ncols());
+        match &self.factor {
+            Some(factor) => factor.solve(right),
+            None => Mat::zeros(0, right.ncols()),
         }
-        let ridged = Mat::from_fn(len, len, |i, j| {
-            let value = self.hessian[(i, j)];
-            if i == j {
-                value * (1.0 + 1e-10) + f64::MIN_POSITIVE
-            } else {
-                value
-            }
-        });
-        ridged.full_piv_lu().solve(right)
     }
+}
+
+/// Of H with a whisper on its diagonal: what the data do not see must not end in a division by zero.
+fn factorise(hessian: &Mat<f64>) -> Option<FullPivLu<f64>> {
+    let len = hessian.nrows();
+    let ridged = Mat::from_fn(len, len, |i, j| {
+        let value = hessian[(i, j)];
+        if i == j {
+            value * (1.0 + 1e-10) + f64::MIN_POSITIVE
+        } else {
+            value
+        }
+    });
+    (len > 0).then(|| ridged.full_piv_lu())
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use simgap_effects::Placed;
+use simgap_effects::{Family, Placed};
 use simgap_simulate::Simulator;
 
 use crate::fit::fit_with;
@@ -27,12 +27,14 @@ pub fn fit_initial_states(
     fixed.given = given;
     let initial = problem.initial_guess();
     if own.is_empty() {
-        let start = Start {
-            effects: vec![],
-            nominal: vec![],
-            initial,
-        };
-        return fit_with(&fixed, &start, weights, true, |_, _, _| None);
+        let direct = states_from(&fixed, initial.clone(), weights)?;
+        if !may_part(&fixed.given) {
+            return Ok(direct);
+        }
+        let led = led(&fixed, initial, weights)?;
+        let led = states_from(&fixed, led, weights)?;
+        let is_better = led.objective < direct.objective - weights.converged;
+        return Ok(if is_better { led } else { direct });
     }
     // Given what they share, the records have nothing to do with each other.
     let mut whole = Start {
@@ -49,6 +51,65 @@ pub fn fit_initial_states(
         whole.initial.extend(best.estimate.initial);
     }
     fit_with(&fixed, &whole, weights, true, |_, _, _| None)
+}
+
+/// Fits initial states from values that are about right, with everything else as given. What the outputs do not
+/// show of a state stays as it is.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn fit_initial_states_from(
+    problem: &Problem,
+    effects: &[Placed],
+    initial: Vec<Vec<f64>>,
+    weights: &Weights,
+) -> Result<Fit, EstimateError> {
+    let mut fixed = problem.with_runs(problem.runs.clone());
+    fixed.given.extend(effects.iter().cloned());
+    states_from(&fixed, initial, weights)
+}
+
+/// Whether motions that begin alike may part: then the objective of an initial state has many valleys.
+fn may_part(effects: &[Placed]) -> bool {
+    let mut effects = effects.iter();
+    effects.any(|placed| placed.effect.family() == Family::Force)
+}
+
+/// Parts of a record, from its beginning, that an initial state is fitted to one after the other, and the samples
+/// of each at the least: over a short one, motions that begin nearly alike stay together.
+const LEADS: [f64; 3] = [1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0];
+const SHORTEST: usize = 32;
+
+/// Initial states fitted to longer and longer parts of every record.
+fn led(
+    fixed: &Problem,
+    initial: Vec<Vec<f64>>,
+    weights: &Weights,
+) -> Result<Vec<Vec<f64>>, EstimateError> {
+    let mut led = Vec::with_capacity(initial.len());
+    for (run, mut state) in fixed.runs.iter().zip(initial) {
+        let parts = LEADS.map(|part| (part * run.len as f64) as usize);
+        for len in parts.into_iter().filter(|len| *len >= SHORTEST) {
+            let part = fixed.with_runs(vec![run.slice(0..len)]);
+            let fit = states_from(&part, vec![state.clone()], weights)?;
+            state = fit.estimate.initial.into_iter().next().unwrap_or(state);
+        }
+        led.push(state);
+    }
+    Ok(led)
+}
+
+fn states_from(
+    fixed: &Problem,
+    initial: Vec<Vec<f64>>,
+    weights: &Weights,
+) -> Result<Fit, EstimateError> {
+    let start = Start {
+        effects: vec![],
+        nominal: vec![],
+        initial,
+    };
+    fit_with(fixed, &start, weights, true, |_, _, _| None)
 }
 
 /// The model of a problem as a fit of [`fit_initial_states`] found it in one of the runs.
@@ -104,17 +165,7 @@ fn best_of(
             best = Some(fit);
         }
     }
-    best.map_or_else(
-        || {
-            let start = Start {
-                effects: vec![],
-                nominal: vec![],
-                initial: vec![state],
-            };
-            fit_with(alone, &start, weights, true, |_, _, _| None)
-        },
-        Ok,
-    )
+    best.map_or_else(|| states_from(alone, vec![state], weights), Ok)
 }
 
 /// With the values that a record has of its own where they mean nothing.

@@ -79,7 +79,7 @@ mod site;
 
 pub use base::{Base, linearise_at};
 pub use fit::{Fit, Interval, fit};
-pub use initial::{fit_initial_states, simulator_at};
+pub use initial::{fit_initial_states, fit_initial_states_from, simulator_at};
 pub use layout::{Candidate, Start};
 pub use outright::score_outright;
 pub use problem::{Problem, Weights};

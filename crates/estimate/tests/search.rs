@@ -66,6 +66,33 @@ fn verify_each_run_gets_its_own_initial_state() {
     assert!(fit.estimate.effects.is_empty() && fit.estimate.nominal.is_empty());
 }
 
+/// Along a force that repeats every few millimetres, two motions that begin nearly alike are soon a period apart: over
+/// a whole record the objective has many valleys, over its first samples one.
+#[test]
+fn verify_initial_states_are_found_where_motions_part() {
+    let model = model(OSCILLATOR);
+    let cogging = [placed(
+        "position_periodic_force",
+        between("block", "ground"),
+        &[4.0, 0.0, 0.006],
+    )];
+    for v0 in [-1.3, -0.8, -0.3, 0.3, 0.8, 1.3] {
+        let run = truth(
+            &model,
+            &cogging,
+            drive(0.002, 3000, 6.0),
+            0.002,
+            &[0.01, v0],
+        );
+        let fit = fit_initial_states(&problem(&model, run), &cogging, &strict()).unwrap();
+        let found = &fit.estimate.initial[0];
+        assert!(
+            (found[0] - 0.01).abs() < 1e-6 && (found[1] - v0).abs() < 1e-4,
+            "{found:?} for {v0}"
+        );
+    }
+}
+
 fn baseline(std: f64) -> (simgap_estimate::Problem, Fit, Weights) {
     let model = model(OSCILLATOR);
     let pushed = [placed(

@@ -1,8 +1,8 @@
-//! A plant of two masses whose records are made four times finer than they are stored.
+//! Plants whose records are made four times finer than they are stored.
 
 use simgap_diagnose::{Outcome, Request, diagnose};
 use simgap_effects::{Placed, find};
-use simgap_model::{Location, Model};
+use simgap_model::{Location, Model, OutputKind};
 use simgap_record::{Channel, Record};
 use simgap_simulate::{Run, Simulator};
 
@@ -91,52 +91,69 @@ fn drive(t: f64, number: f64) -> f64 {
     8.0 * lines.into_iter().enumerate().map(line).sum::<f64>()
 }
 
-/// A record of a machine that is the plant with effects, by its number.
-pub(crate) fn record(effects: &[Placed], number: u64, rows: usize, step_s: f64) -> Record {
-    let model = plant();
+/// A record of a machine that is a plant with effects, by its number.
+pub(crate) fn record(
+    model: &Model,
+    effects: &[Placed],
+    number: u64,
+    rows: usize,
+    step_s: f64,
+) -> Record {
     let fine = rows * FINER;
     let step = step_s / FINER as f64;
     let input: Vec<f64> = (0..fine)
         .map(|n| drive(n as f64 * step, number as f64))
         .collect();
+    // All inputs but the first are silent.
+    let silent = model.inputs.iter().skip(1);
+    let inputs = std::iter::once(input.clone()).chain(silent.clone().map(|_| vec![0.0; fine]));
     let run = Run {
         name: "machine".into(),
         start_s: 0.0,
         time_step_s: step,
         len: fine,
         first_index: 0,
-        inputs: vec![input.clone(), vec![0.0; fine]],
+        inputs: inputs.collect(),
         measured: vec![],
     };
-    let simulator = Simulator::new(&model, effects, 1).unwrap();
-    let outputs = simulator.predict(&run, &[0.0; 4]).unwrap();
+    let simulator = Simulator::new(model, effects, 1).unwrap();
+    let rest = vec![0.0; simulator.state_len()];
+    let outputs = simulator.predict(&run, &rest).unwrap();
     let mut noise = Noise(1000 + number);
     let stored = |signal: &[f64]| -> Vec<f64> { signal.iter().copied().step_by(FINER).collect() };
-    let mut channels = vec![
-        Channel::new("u", "N", stored(&input)),
-        Channel::new("spare", "N", vec![0.0; rows]),
-    ];
-    for (signal, (name, unit)) in outputs.iter().zip([("x", "m"), ("a", "m/s^2")]) {
+    let mut channels = vec![Channel::new("u", "N", stored(&input))];
+    channels.extend(silent.map(|input| Channel::new(&input.channel, "N", vec![0.0; rows])));
+    for (signal, output) in outputs.iter().zip(&model.outputs) {
+        let unit = match output.kind {
+            OutputKind::Acceleration => "m/s^2",
+            _ => "m",
+        };
         let clean = stored(signal);
         let spread = (clean.iter().map(|y| y * y).sum::<f64>() / rows as f64).sqrt();
         let noisy = clean.iter().map(|y| y + NOISE * spread * noise.next());
-        channels.push(Channel::new(name, unit, noisy.collect()));
+        channels.push(Channel::new(&output.channel, unit, noisy.collect()));
     }
     Record::from_uniform(format!("{number}.csv"), 0.0, step_s, channels).unwrap()
 }
 
 /// Diagnoses two records of a machine, checked on a third.
 pub(crate) fn diagnosed(effects: &[Placed], withheld: &[&str]) -> Outcome {
-    diagnosed_at(effects, withheld, 4e-3)
+    diagnosed_as(&plant(), effects, withheld, 4e-3)
 }
 
-/// The same of records that are sampled in steps of so many seconds.
-pub(crate) fn diagnosed_at(effects: &[Placed], withheld: &[&str], step_s: f64) -> Outcome {
+/// The same of a machine that is another plant with effects, sampled in steps of so many seconds.
+pub(crate) fn diagnosed_as(
+    model: &Model,
+    effects: &[Placed],
+    withheld: &[&str],
+    step_s: f64,
+) -> Outcome {
     let rows = (DURATION_S / step_s).round() as usize;
-    let records: Vec<Record> = (1..4).map(|k| record(effects, k, rows, step_s)).collect();
+    let of_number = |k| record(model, effects, k, rows, step_s);
+    let records: Vec<Record> = (1..4).map(of_number).collect();
     let withheld: Vec<String> = withheld.iter().map(ToString::to_string).collect();
     let request = Request {
-        model: &plant(),
+        model,
         train: &records[..2],
         check: &records[2..],
         withheld: &withheld,

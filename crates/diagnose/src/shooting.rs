@@ -1,0 +1,229 @@
+//! Single laws fitted to stretches of the records, each of which begins anew.
+//!
+//! Over a whole record a simulation that is a little off parts from the machine: the objective has a valley for
+//! every lap that one is ahead of the other, and for every blow that one receives alone. In a stretch that begins
+//! as it was measured both stay together for longer, and there are fewer valleys. What is found there is the start
+//! of a fit to whole records: multiple shooting, the stretches tied together by the values they share alone.
+//!
+//! Reference: \[Bock1983\].
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use simgap_effects::Placed;
+use simgap_estimate::{
+    Candidate, EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states_from,
+    linearise_at,
+};
+use simgap_model::Location;
+
+use crate::hypothesis::{Hypothesis, sort, unique};
+use crate::search::Search;
+use crate::stretches::bounds;
+
+/// Laws fitted to stretches, by score, and sets that are fitted to whole records then.
+const FITTED: usize = 12;
+const FINISHED: usize = 6;
+/// Samples of the stretches that a fit begins with, at the least, and how many there are of a record at the most.
+const SHORTEST: usize = 64;
+const MOST_STRETCHES: usize = 40;
+/// Stretches that become one where sets are fitted to longer ones.
+const JOINED: usize = 4;
+/// Steps of these fits: the valley is narrow.
+const STEPS: usize = 80;
+
+impl Search<'_> {
+    /// Single laws fitted to stretches of the records, to longer ones, and then to whole records. Best first.
+    pub(crate) fn fit_by_shooting(
+        &self,
+        base: &Hypothesis,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        let mut cut = Cut::of(self.problem);
+        let is_law = |candidate: &Candidate| candidate.effect.family().is_law();
+        if cut.is_whole() || !self.candidates.iter().any(|(known, _)| is_law(known)) {
+            return Ok(vec![]);
+        }
+        let weights = Weights {
+            most_steps: STEPS,
+            ..self.weights.clone()
+        };
+        let mut found = self.fit_to_stretches(base, &cut)?;
+        loop {
+            let longer = cut.joined();
+            let problem = longer.apply(self.problem);
+            let fits = found.par_iter().filter_map(|start| {
+                let start = cut.of_joined(start);
+                // A start from which the plant runs away is no hypothesis.
+                fit(&problem, &start, &weights).ok()
+            });
+            let fits: Vec<Fit> = fits.collect();
+            if longer.is_whole() {
+                let sets = fits.into_iter().map(|fit| self.hypothesis(fit));
+                let mut sets: Vec<_> = sets.filter(|set| self.is_hypothesis(set)).collect();
+                sort(&mut sets);
+                return Ok(sets);
+            }
+            found = fits.into_iter().map(|fit| fit.estimate).collect();
+            cut = longer;
+        }
+    }
+
+    /// The best single laws, each stretch with an initial state of its own.
+    fn fit_to_stretches(&self, base: &Hypothesis, cut: &Cut) -> Result<Vec<Start>, EstimateError> {
+        let problem = cut.apply(self.problem);
+        let nominal = &base.fit.estimate.nominal;
+        let initial = begin(&problem, cut, nominal, &self.weights)?;
+        let mut begun = fit_initial_states_from(&problem, nominal, initial, &self.weights)?;
+        begun.estimate.nominal.clone_from(nominal);
+        let search = self.for_laws_in(&problem, &begun)?;
+        let begun = search.fit(&begun.estimate)?;
+        let linear = linearise_at(&problem, &begun.fit, &search.weights)?;
+        let mut found = search.extend_at(&begun, &linear, FITTED)?;
+        found.extend(search.fit_from_afar(&begun, &linear)?);
+        sort(&mut found);
+        unique(&mut found);
+        found.truncate(FINISHED);
+        Ok(found.into_iter().map(|set| set.fit.estimate).collect())
+    }
+
+    /// The search for laws in other runs of the same records, with what is typical of the motion of a fit.
+    fn for_laws_in<'b>(
+        &self,
+        problem: &'b Problem,
+        fit: &Fit,
+    ) -> Result<Search<'b>, EstimateError> {
+        let laws = self.candidates.iter().map(|(candidate, _)| candidate);
+        let laws = laws.filter(|candidate| candidate.effect.family().is_law());
+        let sized = laws.map(|law| Ok((law.clone(), problem.site_scale(fit, &law.at)?)));
+        Ok(Search {
+            problem,
+            weights: self.weights.clone(),
+            candidates: sized.collect::<Result<_, EstimateError>>()?,
+            effective_samples: self.effective_samples,
+            gap: self.gap.clone(),
+            accuracy: self.accuracy.clone(),
+        })
+    }
+}
+
+/// The samples of every stretch of every record.
+struct Cut(Vec<Vec<Range<usize>>>);
+
+impl Cut {
+    fn of(problem: &Problem) -> Cut {
+        let runs = problem.runs.iter();
+        Cut(runs
+            .map(|run| bounds(run.len, SHORTEST, MOST_STRETCHES))
+            .collect())
+    }
+
+    fn is_whole(&self) -> bool {
+        self.0.iter().all(|stretches| stretches.len() < 2)
+    }
+
+    /// The records of a problem in stretches.
+    fn apply(&self, problem: &Problem) -> Problem {
+        let runs = problem.runs.iter().zip(&self.0);
+        let cut = runs.flat_map(|(run, stretches)| {
+            let each = stretches.iter();
+            each.map(|samples| run.slice(samples.clone()))
+        });
+        problem.with_runs(cut.collect())
+    }
+
+    /// With every few stretches of a record as one.
+    fn joined(&self) -> Cut {
+        let join = |few: &[Range<usize>]| few[0].start..few[few.len() - 1].end;
+        let of_record =
+            |stretches: &Vec<Range<usize>>| stretches.chunks(JOINED).map(join).collect();
+        Cut(self.0.iter().map(of_record).collect())
+    }
+
+    /// What was fitted to stretches, as each of the joined ones begins.
+    fn of_joined(&self, start: &Start) -> Start {
+        let mut firsts = vec![];
+        let mut next = 0;
+        for stretches in &self.0 {
+            firsts.extend((next..next + stretches.len()).step_by(JOINED));
+            next += stretches.len();
+        }
+        let of_firsts = |list: &[Vec<f64>]| {
+            firsts
+                .iter()
+                .filter_map(|k| list.get(*k).cloned())
+                .collect()
+        };
+        let effects = start.effects.iter().map(|placed| Placed {
+            of_record: of_firsts(&placed.of_record),
+            ..placed.clone()
+        });
+        Start {
+            effects: effects.collect(),
+            nominal: start.nominal.clone(),
+            initial: of_firsts(&start.initial),
+        }
+    }
+}
+
+/// Initial states of the stretches: each begins where the model left the one before, and is moved to where it was
+/// measured. What the outputs do not show, like a position where velocities are measured, goes on.
+fn begin(
+    cut: &Problem,
+    stretches: &Cut,
+    nominal: &[Placed],
+    weights: &Weights,
+) -> Result<Vec<Vec<f64>>, EstimateError> {
+    let guess = cut.initial_guess();
+    let mut states: Vec<Vec<f64>> = Vec::with_capacity(cut.runs.len());
+    for of_record in &stretches.0 {
+        let mut next = None;
+        for _ in of_record {
+            let k = states.len();
+            let alone = cut.with_runs(vec![cut.runs[k].clone()]);
+            let from = next.unwrap_or_else(|| guess[k].clone());
+            let fit = fit_initial_states_from(&alone, nominal, vec![from], weights)?;
+            let state = fit.estimate.initial.into_iter().next().unwrap_or_default();
+            next = Some(end(&alone, nominal, &state)?);
+            states.push(state);
+        }
+    }
+    Ok(states)
+}
+
+/// The state one step after the last sample of the only run.
+fn end(alone: &Problem, nominal: &[Placed], initial: &[f64]) -> Result<Vec<f64>, EstimateError> {
+    let simulator = alone.simulator(nominal, 0)?;
+    let run = &alone.runs[0];
+    let masses = alone.model.masses.iter();
+    let ends = masses.map(|mass| {
+        let path = simulator.path(run, initial, &Location::Mass(mass.name.clone()))?;
+        let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+        let velocity = last(&path.velocity);
+        Ok([
+            last(&path.displacement) + run.time_step_s * velocity,
+            velocity,
+        ])
+    });
+    let ends = ends.collect::<Result<Vec<[f64; 2]>, EstimateError>>()?;
+    let part = |i: usize| ends.iter().map(move |end| end[i]);
+    Ok(part(0).chain(part(1)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joined_stretches_begin_where_the_first_of_them_did() {
+        let cut = Cut(vec![vec![0..2, 2..5, 5..6, 6..8, 8..9], vec![0..4, 4..7]]);
+        let longer = cut.joined();
+        assert_eq!(longer.0.concat(), [0..8, 8..9, 0..7]);
+        assert!(!longer.is_whole() && longer.joined().is_whole());
+        let start = Start {
+            effects: vec![],
+            nominal: vec![],
+            initial: (0..7).map(|k| vec![f64::from(k)]).collect(),
+        };
+        assert_eq!(cut.of_joined(&start).initial, [[0.0], [4.0], [5.0]]);
+    }
+}
