@@ -31,10 +31,13 @@ pub fn fit_initial_states(
         if !may_part(&fixed.given) {
             return Ok(direct);
         }
-        let led = led(&fixed, initial, weights)?;
-        let led = states_from(&fixed, led, weights)?;
-        let is_better = led.objective < direct.objective - weights.converged;
-        return Ok(if is_better { led } else { direct });
+        // A part that cannot be simulated leads nowhere.
+        let led = led(&fixed, initial, weights).and_then(|led| states_from(&fixed, led, weights));
+        let enough = direct.objective - weights.converged;
+        return Ok(led
+            .ok()
+            .filter(|led| led.objective < enough)
+            .unwrap_or(direct));
     }
     // Given what they share, the records have nothing to do with each other.
     let mut whole = Start {
