@@ -53,8 +53,9 @@ impl ForceLaw for Gravity {
 }
 
 impl Simulator {
-    /// Puts the effects on the nominal model. `substeps` is used where nonlinear forces act
-    /// (see [`crate::substeps_for`]); effects written in the model file are not added here.
+    /// Puts the effects on the nominal model: first what changes its members and masses, then what adds masses,
+    /// then forces and maps. `substeps` is used where nonlinear forces act (see [`crate::substeps_for`]); effects
+    /// written in the model file are not added here.
     ///
     /// # Errors
     /// [`SimulateError::Model`] when an effect's place is not in the model.
@@ -69,15 +70,11 @@ impl Simulator {
         let mut input_effects = Vec::new();
         let mut sampling_maps = Vec::new();
         let mut builders = Vec::new();
-        let mut added = Vec::new();
+        let mut modes = Vec::new();
         for placed in effects {
             match (placed.action(), &placed.at) {
                 (Action::Model(change), at) => change(&mut model, at),
-                (Action::Mode { change, start }, at) => {
-                    let before = model.dof_count();
-                    change(&mut model, at);
-                    added.extend((before..model.dof_count()).map(|_| start));
-                }
+                (Action::Mode { change, start }, at) => modes.push((at, change, start)),
                 (Action::Force(law), at) => laws.push((at, law)),
                 (Action::Member(build), at) => builders.push((at, build)),
                 (Action::Input(map), Location::Input(channel)) => {
@@ -95,6 +92,13 @@ impl Simulator {
                 }
                 (Action::Input(_) | Action::Output(_) | Action::Sampling(_), _) => {}
             }
+        }
+        // A hidden mass may part a member from its place: what changes members has come first.
+        let mut added = Vec::new();
+        for (at, change, start) in modes {
+            let before = model.dof_count();
+            change(&mut model, at);
+            added.extend((before..model.dof_count()).map(|_| start));
         }
         // The members as all changes of the model leave them.
         laws.extend(

@@ -6,10 +6,11 @@ mod support;
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
+use simgap_effects::Placed;
 use simgap_model::Location;
 use support::{
-    base_input, force_input, force_output, largest_difference, model, oscillator, output, placed,
-    predict, run, sampled,
+    base_input, between, force_input, force_output, largest_difference, model, oscillator, output,
+    placed, predict, run, sampled,
 };
 
 /// A base that moves as B sin ωt: X/B = (k + icω) / (k − mω² + icω).
@@ -384,4 +385,52 @@ fn verify_the_order_of_a_chain_with_a_lag_does_not_matter() {
     assert_eq!(one, other);
     // The record begins where the filter was at rest: no transient is made up.
     assert!(largest_difference(&one[0], &still[0]) < 1e-15);
+}
+
+/// A support takes its members with their errors, wherever in the list they are.
+#[test]
+fn verify_a_support_takes_members_as_errors_leave_them() {
+    let of = |stiffness: f64, damping: f64| {
+        let parts = [
+            oscillator(2.0, stiffness, damping, "ground"),
+            force_input("block"),
+            output("y", "displacement", "block"),
+            force_output("leg", "block", "ground"),
+        ];
+        model(&parts.concat())
+    };
+    let (nominal, leg) = (of(800.0, 3.0), between("block", "ground"));
+    let support = placed("flexible_support", leg.clone(), &[5e3, 0.4, 0.05, 0.0, 0.0]);
+    let softer = placed("stiffness_error", leg.clone(), &[0.8]);
+    let damped = placed("damping_error", leg, &[1.5]);
+    let force = sampled(0.002, 500, |t| (TAU * 4.0 * t).sin());
+    let run = run(0.002, 500, vec![force]);
+    let predicted = |effects: &[Placed]| predict(&nominal, effects, 1, &run, &[0.0, 0.0]);
+    let last = predicted(&[support.clone(), softer.clone(), damped.clone()]);
+    assert_eq!(last, predicted(&[softer, damped, support.clone()]));
+    let errors_in_the_file = predict(&of(640.0, 4.5), &[support], 1, &run, &[0.0, 0.0]);
+    for (one, other) in last.iter().zip(&errors_in_the_file) {
+        let size = other.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+        assert!(largest_difference(one, other) < 1e-9 * size);
+    }
+}
+
+/// The force in a member that stands on a support that hardly gives way is the one it carries on the ground.
+#[test]
+fn verify_a_force_is_measured_in_members_on_a_support() {
+    let text = [
+        oscillator(2.0, 800.0, 3.0, "ground"),
+        force_input("block"),
+        force_output("leg", "block", "ground"),
+    ]
+    .concat();
+    let (nominal, leg) = (model(&text), between("block", "ground"));
+    let stiff = placed("flexible_support", leg, &[8e8, 0.4, 0.05, 0.0, 0.0]);
+    let force = sampled(0.002, 500, |t| (TAU * 4.0 * t).sin());
+    let run = run(0.002, 500, vec![force]);
+    let predicted = |effects: &[Placed]| predict(&nominal, effects, 1, &run, &[0.0, 0.0]).remove(0);
+    let (on_ground, on_support) = (predicted(&[]), predicted(&[stiff]));
+    let size = on_ground.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+    assert!(size > 0.5);
+    assert!(largest_difference(&on_ground, &on_support) < 1e-4 * size);
 }

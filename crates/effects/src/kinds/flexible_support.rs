@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use simgap_model::{Damper, GROUND, Location, Mass, Model, Spring, same_pair};
+use simgap_model::{Damper, GROUND, Location, Mass, Model, OutputKind, Spring, same_pair};
 
 use super::attached_mode::{octaves, unused_name};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
@@ -15,8 +15,8 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// cₛ = 2 ζ √(kₛ mₛ)                                   (2)
 /// ```
 ///
-/// k and c are the members of the nominal model at the place. A force that drives the mass acts
-/// against the ground, not against the support.
+/// k and c are the members of the model at the place; a force that is measured between its nodes is theirs. A
+/// force that drives the mass acts against the ground, not against the support.
 ///
 /// Reference: `park-mold`, equation (4), for a mold on its support.
 pub(crate) struct FlexibleSupport;
@@ -47,6 +47,12 @@ fn stand(model: &mut Model, at: &Location, [mass, stiffness, damping_ratio]: [f6
         .dampers
         .iter_mut()
         .for_each(|d| reroute(&mut d.between));
+    // What they carry is still measured in them.
+    let forces = model
+        .outputs
+        .iter_mut()
+        .filter(|o| o.kind == OutputKind::Force);
+    forces.filter_map(|o| o.between.as_mut()).for_each(reroute);
     let between = [name.clone(), GROUND.to_string()];
     model.masses.push(Mass {
         name: name.clone(),
