@@ -71,6 +71,7 @@ mod evidence;
 mod final_fit;
 mod gap;
 mod hypothesis;
+mod jumps;
 mod locate;
 mod out_of_sight;
 mod outcome;

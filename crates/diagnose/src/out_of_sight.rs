@@ -86,21 +86,17 @@ pub(crate) fn add_rivals_out_of_sight(
     nominal: &[Placed],
     judged: &mut [Judged],
 ) -> Result<Option<Hypothesis>, EstimateError> {
+    let named = judged.iter().enumerate();
+    let found = named
+        .map(|(i, judged)| out_of_sight_of(search, settled, (i, judged), nominal))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut better: Option<Hypothesis> = None;
     for (i, judged) in judged.iter_mut().enumerate() {
-        let mut limits = vec![judged.placed.clone()];
-        let mut rivals = search.grow(settled, i)?;
-        let equals = judged.swaps.iter();
-        let equals =
-            equals.filter(|swap| is_nominal(&swap.placed) && swap.misfit < INDISTINGUISHABLE);
-        for swap in equals {
-            let instead = search.fit(&adjusted(&swap.estimate, nominal))?;
-            let mut effects = instead.effects().iter();
-            if let Some(place) = effects.position(|placed| name(placed) == name(&swap.placed)) {
-                rivals.extend(search.grow(&instead, place)?);
-                limits.push(swap.placed.clone());
-            }
-        }
+        let (mut rivals, limits) = found[i].clone();
+        // What takes the place of several named parameters is a rival of each.
+        let lacks = |rival: &&Hypothesis| !rival.key().contains(&name(&judged.placed));
+        let all = found.iter().flat_map(|(rivals, _)| rivals);
+        rivals.extend(all.filter(lacks).cloned());
         sort(&mut rivals);
         unique(&mut rivals);
         rivals.retain(|rival| identified(rival, settled));
@@ -130,6 +126,29 @@ pub(crate) fn add_rivals_out_of_sight(
             .or(better);
     }
     Ok(better)
+}
+
+/// The sets with dynamics in the place of the i-th effect, or of a parameter that fits as well there, and these
+/// parameters.
+fn out_of_sight_of(
+    search: &Search<'_>,
+    settled: &Hypothesis,
+    (i, judged): (usize, &Judged),
+    nominal: &[Placed],
+) -> Result<(Vec<Hypothesis>, Vec<Placed>), EstimateError> {
+    let mut limits = vec![judged.placed.clone()];
+    let mut rivals = search.grow(settled, i)?;
+    let equals = judged.swaps.iter();
+    let equals = equals.filter(|swap| is_nominal(&swap.placed) && swap.misfit < INDISTINGUISHABLE);
+    for swap in equals {
+        let instead = search.fit(&adjusted(&swap.estimate, nominal))?;
+        let mut effects = instead.effects().iter();
+        if let Some(place) = effects.position(|placed| name(placed) == name(&swap.placed)) {
+            rivals.extend(search.grow(&instead, place)?);
+            limits.push(swap.placed.clone());
+        }
+    }
+    Ok((rivals, limits))
 }
 
 /// A start without the other parameters that an effect of it turns into: it takes the place of all.

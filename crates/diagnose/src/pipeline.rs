@@ -20,7 +20,7 @@ use crate::outcome::{corrected_model, series};
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
 use crate::verdict::{Judged, earned, judge, prune, simplest};
-use crate::{DiagnoseError, Gap, answer, locate, stretches, unexplained};
+use crate::{DiagnoseError, Gap, answer, jumps, locate, stretches, unexplained};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
 const RECALIBRATION_PRIOR: f64 = 0.5;
@@ -155,11 +155,11 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     };
     let anew = if unexplained::has_force(&answer) && fails(&answer) {
         let known = &recalibrated.estimate.nominal;
-        stretches::gap_started_anew(&check, known, &placed, &plain).ok()
+        let anew = stretches::gap_followed_anew(&check, known, &placed, &plain);
+        anew.ok().flatten()
     } else {
         None
     };
-    let anew = anew.filter(stretches::follows);
     answer.follows_anew = anew.is_some();
     if harms(&gap) && answer.names_more_than_parameters() && !answer.follows_anew {
         // On records it was not fitted to, the set is worse than parameters alone.
@@ -174,7 +174,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         let short = check.with_runs(excerpts(&check.runs));
         answer::held_back(&short, &answer.singles, &plain)?
     };
-    let mut verdict = answer::verdict(&train, &answer, &gap);
+    let between = jumps::gap_between(&check, &answer.set, (&placed, &predictions[2]), &gap);
+    let between = between.filter(|_| unexplained::has_force(&answer));
+    let mut verdict = answer::verdict(&train, &answer, between.as_ref().unwrap_or(&gap));
     let left_unknown = verdict.status == crate::Status::Unknown;
     let (gap, placed, shown) = if left_unknown {
         // Blame nothing: the corrected model is the recalibrated one.

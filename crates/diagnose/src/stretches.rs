@@ -13,6 +13,7 @@ use simgap_simulate::Run;
 
 use crate::diagnosis::Gap;
 use crate::gap::{gap, predict};
+use crate::jumps::gap_of_check_between;
 use crate::unexplained::NOTHING_BUT_NOISE;
 
 /// Stretches that a check record is cut into at the most, and samples of each at the least.
@@ -22,24 +23,27 @@ const SHORTEST: usize = 128;
 const FOLLOWS: f64 = 0.7;
 
 /// The gap on the check records, cut into stretches of which every one has its own initial state, as given, with
-/// re-estimated parameters and corrected.
-pub(crate) fn gap_started_anew(
+/// re-estimated parameters and corrected; `None` where the corrected model does not follow them.
+pub(crate) fn gap_followed_anew(
     check: &Problem,
     recalibrated: &[Placed],
     corrected: &[Placed],
     weights: &Weights,
-) -> Result<Gap, EstimateError> {
+) -> Result<Option<Gap>, EstimateError> {
     let cut = check.with_runs(check.runs.iter().flat_map(stretches).collect());
     let predictions = [&[], recalibrated, corrected]
         .into_par_iter()
         .map(|effects| predict(&cut, effects, weights))
         .collect::<Result<Vec<_>, _>>()?;
     let last = (corrected, &predictions[2]);
-    Ok(gap(&cut, &predictions[0], &predictions[1], last))
+    let gap = gap(&cut, &predictions[0], &predictions[1], last);
+    let between = gap_of_check_between(&cut, last, &gap);
+    let follows = follows(between.as_ref().unwrap_or(&gap));
+    Ok(Some(gap).filter(|_| follows))
 }
 
 /// Whether the corrected model leaves nothing but noise of the stretches, and parameters alone more.
-pub(crate) fn follows(gap: &Gap) -> bool {
+fn follows(gap: &Gap) -> bool {
     gap.corrected < NOTHING_BUT_NOISE * gap.noise_floor
         && gap.corrected < FOLLOWS * gap.recalibrated
 }

@@ -47,6 +47,10 @@ const BENT_STANDS_OUT: f64 = 1.1;
 const LEAVES_OF_BOTH: [f64; 2] = [1.08, 1.3];
 /// A law that fails on the check records for want of luck is not outdone there by one that does so much better.
 const OUTDONE: f64 = 0.7;
+/// What leaves this multiple of the noise of all records, and this part of the motion, explains them no better for
+/// closing much of a large gap.
+const LEAVES_MANIFOLD: f64 = 4.0;
+const NO_SMALL_PART: f64 = 0.05;
 /// What leaves less than this multiple of the noise leaves nothing.
 pub(crate) const NOTHING_BUT_NOISE: f64 = 1.1;
 /// The same where samples are lost or stored in steps: no model says which, and the noise is known less well.
@@ -58,6 +62,7 @@ pub(crate) fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: S
         || bent(answer, gap)
         || another_law(answer, gap)
         || leaves_of_both(answer, gap)
+        || leaves_manifold(answer, gap)
         || is_poor_stand_in(answer, gap) && !answer.follows_anew
         || is_of_no_use(answer, gap, status)
         || is_of_every_sensor(train, answer)
@@ -194,6 +199,14 @@ fn leaves_of_both(answer: &Answer, gap: &Gap) -> bool {
         && answer.remainder.over_noise > of_train
         && gap.corrected > of_check * gap.noise_floor
         && gap.closed < 1.0 - STAND_IN_LEAVES
+        && !answer.follows_anew
+        && !names_sampling(answer)
+}
+
+/// Whether whatever is named leaves many times the noise of all records, and no small part of the motion.
+fn leaves_manifold(answer: &Answer, gap: &Gap) -> bool {
+    answer.remainder.over_noise > LEAVES_MANIFOLD
+        && gap.corrected > f64::max(LEAVES_MANIFOLD * gap.noise_floor, NO_SMALL_PART)
         && !answer.follows_anew
         && !names_sampling(answer)
 }

@@ -12,6 +12,7 @@ use crate::difference::{
 };
 use crate::evidence::{freedom, probabilities};
 use crate::hypothesis::{Hypothesis, bends, name, remove, sort, unique};
+use crate::jumps::brings_jumps_alone;
 use crate::out_of_sight::turns_into;
 use crate::search::Search;
 
@@ -172,7 +173,8 @@ fn earns(
     };
     let is_told = is_relevant
         && (shrunk || matters(search, set, subset))
-        && (set.effects().len() < 2 || confirmed(search, set, subset)?);
+        && (set.effects().len() < 2
+            || !brings_jumps_alone(search, set, subset, least) && confirmed(search, set, subset)?);
     Ok(is_told || is_sure(search, set, subset)?)
 }
 
