@@ -34,6 +34,13 @@ impl Hypothesis {
         key
     }
 
+    /// Whether it is another set with something else in the place of its i-th effect.
+    pub(crate) fn differs_in(&self, other: &Hypothesis, i: usize) -> bool {
+        let (key, mut others) = (self.key(), other.effects().iter().enumerate());
+        key.len() == other.effects().len()
+            && others.all(|(j, placed)| key.contains(&name(placed)) == (j != i))
+    }
+
     /// Whether a candidate makes no sense beside the effects of the set: it is one of them, or one
     /// contains the other at the same place.
     pub(crate) fn rules_out(&self, candidate: &Candidate) -> bool {

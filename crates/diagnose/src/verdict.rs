@@ -171,10 +171,11 @@ fn earns(
     } else {
         relevant(search, &set.fit, &subset.fit)
     };
+    let alone = set.effects().len() < 2;
     let is_told = is_relevant
         && (shrunk || matters(search, set, subset))
-        && (set.effects().len() < 2
-            || !brings_jumps_alone(search, set, subset, least) && confirmed(search, set, subset)?);
+        && (alone && !shrunk || !brings_jumps_alone(search, set, subset, least))
+        && (alone || confirmed(search, set, subset)?);
     Ok(is_told || is_sure(search, set, subset)?)
 }
 
@@ -210,14 +211,16 @@ pub(crate) fn judge(
     most_swaps: usize,
 ) -> Result<(Hypothesis, Vec<Judged>), EstimateError> {
     let mut set = set;
+    // What a rival took the place of stays a rival.
+    let mut displaced: Vec<Hypothesis> = Vec::new();
     for _ in 0..most_swaps {
-        let (judged, better) = judge_once(search, &set)?;
+        let (judged, better) = judge_once(search, &set, &displaced)?;
         match better {
-            Some(better) => set = prune(search, better)?,
+            Some(better) => displaced.push(std::mem::replace(&mut set, prune(search, better)?)),
             None => return Ok((set, judged)),
         }
     }
-    let (judged, _) = judge_once(search, &set)?;
+    let (judged, _) = judge_once(search, &set, &displaced)?;
     Ok((set, judged))
 }
 
@@ -225,10 +228,11 @@ pub(crate) fn judge(
 fn judge_once(
     search: &Search<'_>,
     set: &Hypothesis,
+    displaced: &[Hypothesis],
 ) -> Result<(Vec<Judged>, Option<Hypothesis>), EstimateError> {
     let judged = (0..set.effects().len())
         .into_par_iter()
-        .map(|i| judge_effect(search, set, i))
+        .map(|i| judge_effect(search, set, i, displaced))
         .collect::<Result<Vec<_>, _>>()?;
     let (list, better): (Vec<Judged>, Vec<Option<Hypothesis>>) = judged.into_iter().unzip();
     let better = better.into_iter().flatten().reduce(|best, other| {
@@ -246,6 +250,7 @@ fn judge_effect(
     search: &Search<'_>,
     set: &Hypothesis,
     i: usize,
+    displaced: &[Hypothesis],
 ) -> Result<(Judged, Option<Hypothesis>), EstimateError> {
     let own = &set.effects()[i];
     let subset = without(search, set, i)?;
@@ -255,6 +260,9 @@ fn judge_effect(
         discount(search, set, rival);
         level(search, set, rival);
     }
+    // The set was held against these when it took their place.
+    let known = displaced.iter();
+    rivals.extend(known.filter(|old| old.differs_in(set, i)).cloned());
     rivals.retain(|rival| rival.key() != set.key());
     sort(&mut rivals);
     unique(&mut rivals);
