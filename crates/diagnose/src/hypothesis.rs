@@ -34,10 +34,10 @@ impl Hypothesis {
         key
     }
 
-    /// Whether it is another set with something else in the place of its i-th effect.
-    pub(crate) fn differs_in(&self, other: &Hypothesis, i: usize) -> bool {
-        let (key, mut others) = (self.key(), other.effects().iter().enumerate());
-        key.len() == other.effects().len()
+    /// Whether it is another set with one other effect in the place of its i-th.
+    pub(crate) fn replaces(&self, i: usize, of: &Hypothesis) -> bool {
+        let (key, mut others) = (self.key(), of.effects().iter().enumerate());
+        key.len() == of.effects().len()
             && others.all(|(j, placed)| key.contains(&name(placed)) == (j != i))
     }
 

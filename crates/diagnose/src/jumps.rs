@@ -1,8 +1,7 @@
 //! What is left where a force jumps.
 //!
-//! A force output or an accelerometer beside dry friction, play or a stop jumps when the motion turns, sticks or
-//! strikes. When exactly, between two samples, no estimate says, and one sample on the wrong side is off by the
-//! whole jump: a true law then leaves much more than noise, in a few samples, and nothing but noise in all others. A
+//! A force output or an accelerometer beside dry friction jumps when the motion turns or sticks. When exactly,
+//! between two samples, no estimate says, and one sample on the wrong side is off by the whole jump: a true law then leaves much more than noise, in a few samples, and nothing but noise in all others. A
 //! wrong law leaves something in most of them. So what the few worst samples of such a channel leave says nothing
 //! against a law, nor for a further one.
 //!
@@ -13,7 +12,7 @@
 //!
 //! 0.830 is what the worst 3 % leave of the variance of normal noise, N_c its variance.
 
-use simgap_effects::Placed;
+use simgap_effects::{Action, Placed};
 use simgap_estimate::Problem;
 use simgap_model::OutputKind;
 
@@ -72,7 +71,15 @@ fn is_of_jumps(discrepancy: &[Vec<Vec<f64>>], jumping: &[bool], noise: &[f64]) -
     all > EXCESS && between < SPREAD * all
 }
 
-/// Whether what a set leaves is of jumps, and what its further effects bring beside a smaller set is there.
+/// Whether an effect is a law with a dry part: its force jumps when the motion turns.
+fn is_dry(placed: &Placed) -> bool {
+    match placed.action() {
+        Action::Force(law) => law.dry_level(0.0).is_some(),
+        _ => false,
+    }
+}
+
+/// Whether what a set with dry friction leaves is of jumps, and what it brings beyond a smaller set is there.
 pub(crate) fn brings_jumps_alone(
     search: &Search<'_>,
     larger: &Hypothesis,
@@ -83,35 +90,39 @@ pub(crate) fn brings_jumps_alone(
     let jumping = jumping(problem);
     let left = &larger.fit.discrepancy;
     let noise = noise_variance(left, &stepped(problem, larger.effects()));
-    if !is_of_jumps(left, &jumping, &noise) {
+    if !larger.effects().iter().any(is_dry) || !is_of_jumps(left, &jumping, &noise) {
         return false;
     }
-    let mut brings = -search.penalty(larger, smaller);
-    for (c, jumps) in jumping.iter().enumerate() {
-        let of = |set: &Hypothesis| {
+    let channels = jumping.iter().zip(&search.accuracy).enumerate();
+    let gains = channels.map(|(c, (jumps, off))| {
+        let of = |set: &Hypothesis| -> Vec<f64> {
             let runs = set.fit.discrepancy.iter();
             runs.flat_map(|run| run[c].iter().map(|d| d * d)).collect()
         };
-        let [own, other]: [Vec<f64>; 2] = [of(larger), of(smaller)];
-        let mut order: Vec<usize> = (0..own.len()).collect();
+        let mut pairs: Vec<(f64, f64)> = of(larger).into_iter().zip(of(smaller)).collect();
         if *jumps {
-            // The same samples of both.
-            order.sort_by(|a, b| own[*a].total_cmp(&own[*b]));
-            order.truncate(kept(own.len()));
+            // The samples that are worst in one of the two, which repairs some of them by chance.
+            let worst = |(own, other): &(f64, f64)| own.max(*other);
+            pairs.sort_by(|a, b| worst(a).total_cmp(&worst(b)));
+            pairs.truncate(kept(pairs.len()));
         }
-        let sum = |squares: &[f64]| order.iter().map(|k| squares[*k]).sum::<f64>();
-        let ratio = sum(&other) / sum(&own).max(f64::MIN_POSITIVE);
-        brings += 0.5 * search.weights.independence[c] * order.len() as f64 * ratio.ln();
-    }
-    brings < least
+        let count = pairs.len() as f64;
+        let (own, other) = pairs
+            .iter()
+            .fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
+        let floor = (count * off * off).max(f64::MIN_POSITIVE);
+        0.5 * search.weights.independence[c] * count * ((other + floor) / (own + floor)).ln()
+    });
+    gains.sum::<f64>() - search.penalty(larger, smaller) < least
 }
 
-/// The gap as it is without jumps, where jumps are all that a set leaves, of the records it was fitted to and of the
-/// check records.
+/// The gap as it is without jumps, where they are all that a set with dry friction leaves, of the records it was
+/// fitted to and of the check records. `predictions` are those of the model as given, with re-estimated parameters
+/// and corrected.
 pub(crate) fn gap_between(
     check: &Problem,
     set: &Hypothesis,
-    (effects, corrected): (&[Placed], &Prediction),
+    (effects, predictions): (&[Placed], &[Prediction]),
     gap: &Gap,
 ) -> Option<Gap> {
     let jumping = jumping(check);
@@ -120,29 +131,37 @@ pub(crate) fn gap_between(
     let small = excess(&variance(left, &jumping, true), &noise) <= EXCESS;
     let is_learnt = small || is_of_jumps(left, &jumping, &noise);
     is_learnt
-        .then(|| gap_of_check_between(check, (effects, corrected), gap))
+        .then(|| gap_of_check_between(check, (effects, predictions), gap))
         .flatten()
 }
 
 /// The same of the check records alone.
 pub(crate) fn gap_of_check_between(
     check: &Problem,
-    (effects, corrected): (&[Placed], &Prediction),
+    (effects, predictions): (&[Placed], &[Prediction]),
     gap: &Gap,
 ) -> Option<Gap> {
     let jumping = jumping(check);
-    let left = &corrected.discrepancy;
-    let noise = noise_variance(left, &stepped(check, effects));
-    if !is_of_jumps(left, &jumping, &noise) {
+    let [nominal, recalibrated, corrected] = predictions else {
+        return None;
+    };
+    let noise = noise_variance(&corrected.discrepancy, &stepped(check, effects));
+    if !effects.iter().any(is_dry) || !is_of_jumps(&corrected.discrepancy, &jumping, &noise) {
         return None;
     }
-    let channels = variance(left, &jumping, false).into_iter();
-    let channels = channels.zip(check.output_std());
-    let nrmse: Vec<f64> = channels.map(|(v, std)| v.sqrt() / std).collect();
-    let corrected = total(&nrmse).max(gap.noise_floor).min(gap.corrected);
+    let std = check.output_std();
+    let without = |prediction: &Prediction, all: f64| {
+        let channels = variance(&prediction.discrepancy, &jumping, false).into_iter();
+        let nrmse: Vec<f64> = channels.zip(&std).map(|(v, std)| v.sqrt() / std).collect();
+        total(&nrmse).min(all)
+    };
+    let nominal = without(nominal, gap.nominal);
+    let corrected = without(corrected, gap.corrected).max(gap.noise_floor);
     Some(Gap {
+        nominal,
+        recalibrated: without(recalibrated, gap.recalibrated),
         corrected,
-        closed: closed(gap.nominal, corrected, gap.noise_floor),
+        closed: closed(nominal, corrected, gap.noise_floor),
         ..gap.clone()
     })
 }

@@ -148,10 +148,18 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         gap(&check, &predictions[0], &predictions[1], corrected)
     };
     let mut gap = gap_of(&placed, &predictions);
+    // What it is judged by.
+    let between = |answer: &Answer, placed: &[Placed], predictions: &[Prediction], gap: &Gap| {
+        let between = jumps::gap_between(&check, &answer.set, (placed, predictions), gap);
+        between.unwrap_or_else(|| gap.clone())
+    };
+    let mut judged_by = between(&answer, &placed, &predictions, &gap);
     let harms = |gap: &Gap| gap.corrected > HARMS * gap.recalibrated;
     // A law that fails on the check records, or another motion of the same law?
     let fails = |answer: &Answer| {
-        harms(&gap) || unexplained::leaves_much(&gap) || unexplained::is_poor_stand_in(answer, &gap)
+        harms(&judged_by)
+            || unexplained::leaves_much(&judged_by)
+            || unexplained::is_poor_stand_in(answer, &judged_by)
     };
     let anew = if unexplained::has_force(&answer) && fails(&answer) {
         let known = &recalibrated.estimate.nominal;
@@ -161,7 +169,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         None
     };
     answer.follows_anew = anew.is_some();
-    if harms(&gap) && answer.names_more_than_parameters() && !answer.follows_anew {
+    if harms(&judged_by) && answer.names_more_than_parameters() && !answer.follows_anew {
         // On records it was not fitted to, the set is worse than parameters alone.
         let singles = std::mem::take(&mut answer.singles);
         answer = search(request, &train, fits, Scope::Parameters, progress)?;
@@ -169,14 +177,13 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         placed = answer.placed();
         predictions[2] = predict(&check, &placed, &plain)?;
         gap = gap_of(&placed, &predictions);
+        judged_by = between(&answer, &placed, &predictions, &gap);
     }
     answer.held_back = {
         let short = check.with_runs(excerpts(&check.runs));
         answer::held_back(&short, &answer.singles, &plain)?
     };
-    let between = jumps::gap_between(&check, &answer.set, (&placed, &predictions[2]), &gap);
-    let between = between.filter(|_| unexplained::has_force(&answer));
-    let mut verdict = answer::verdict(&train, &answer, between.as_ref().unwrap_or(&gap));
+    let mut verdict = answer::verdict(&train, &answer, &judged_by);
     let left_unknown = verdict.status == crate::Status::Unknown;
     let (gap, placed, shown) = if left_unknown {
         // Blame nothing: the corrected model is the recalibrated one.

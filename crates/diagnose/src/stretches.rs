@@ -37,7 +37,7 @@ pub(crate) fn gap_followed_anew(
         .collect::<Result<Vec<_>, _>>()?;
     let last = (corrected, &predictions[2]);
     let gap = gap(&cut, &predictions[0], &predictions[1], last);
-    let between = gap_of_check_between(&cut, last, &gap);
+    let between = gap_of_check_between(&cut, (corrected, &predictions), &gap);
     let follows = follows(between.as_ref().unwrap_or(&gap));
     Ok(Some(gap).filter(|_| follows))
 }

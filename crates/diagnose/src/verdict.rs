@@ -211,7 +211,7 @@ pub(crate) fn judge(
     most_swaps: usize,
 ) -> Result<(Hypothesis, Vec<Judged>), EstimateError> {
     let mut set = set;
-    // What a rival took the place of stays a rival.
+    // What one rival took the place of stays a rival.
     let mut displaced: Vec<Hypothesis> = Vec::new();
     for _ in 0..most_swaps {
         let (judged, better) = judge_once(search, &set, &displaced)?;
@@ -262,7 +262,7 @@ fn judge_effect(
     }
     // The set was held against these when it took their place.
     let known = displaced.iter();
-    rivals.extend(known.filter(|old| old.differs_in(set, i)).cloned());
+    rivals.extend(known.filter(|old| old.replaces(i, set)).cloned());
     rivals.retain(|rival| rival.key() != set.key());
     sort(&mut rivals);
     unique(&mut rivals);
@@ -302,6 +302,8 @@ fn judge_effect(
         relevance: fall(&subset.fit, &set.fit),
         swaps,
     };
+    // What the set took the place of does not take it back.
+    rivals.retain(|rival| displaced.iter().all(|old| old.key() != rival.key()));
     // A simpler rival that is about as likely is the better name, and so is the parameter that dynamics turn into
     // whose mode no record shows; one as rich must lead.
     let handicap = |rival: &Hypothesis| {

@@ -2,7 +2,7 @@
 
 use simgap_effects::{Action, Placed, Sampled, SignalMap};
 use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, Snapshot};
-use simgap_model::{Location, Model, Node};
+use simgap_model::{Location, Model, Node, same_pair};
 
 use crate::batch::excitation;
 use crate::outputs::{BaseMotion, OutputPlan, across, output_plans};
@@ -93,7 +93,9 @@ impl Simulator {
                 (Action::Input(_) | Action::Output(_) | Action::Sampling(_), _) => {}
             }
         }
-        // A hidden mass may part a member from its place: what changes members has come first.
+        // A hidden mass may take a member from its place: what changes members has come first, and the forces at the
+        // member go with it.
+        let before = model.clone();
         let mut added = Vec::new();
         for (at, change, start) in modes {
             let before = model.dof_count();
@@ -101,11 +103,15 @@ impl Simulator {
             added.extend((before..model.dof_count()).map(|_| start));
         }
         // The members as all changes of the model leave them.
-        laws.extend(
-            builders
-                .into_iter()
-                .map(|(at, build)| (at, build(&model, at))),
-        );
+        let mut laws: Vec<_> = laws
+            .into_iter()
+            .map(|(at, law)| (moved(&before, &model, at), law))
+            .collect();
+        laws.extend(builders.into_iter().map(|(at, build)| {
+            let at = moved(&before, &model, at);
+            let law = build(&model, &at);
+            (at, law)
+        }));
         output_maps.sort_by_key(|(_, map): &(usize, Box<dyn SignalMap>)| map.ends_the_chain());
         // What happens while sampling comes after what happens before, however they are listed.
         output_maps.extend(sampling_maps);
@@ -124,7 +130,7 @@ impl Simulator {
             carried.push(false);
         }
         for (at, law) in laws {
-            let [a, b] = ends(&model, at)?;
+            let [a, b] = ends(&model, &at)?;
             elements.push(Element { a, b, law });
             carried.push(matches!(at, Location::Between(_)));
         }
@@ -339,6 +345,31 @@ impl Simulator {
                 observe(at, &base);
             },
         );
+    }
+}
+
+/// Where a force between two nodes acts once a member between them has been taken to another node.
+fn moved(before: &Model, after: &Model, at: &Location) -> Location {
+    let Location::Between(pair) = at else {
+        return at.clone();
+    };
+    let springs = before.springs.iter().zip(&after.springs);
+    let springs = springs.map(|(old, new)| (&old.between, &new.between));
+    let dampers = before.dampers.iter().zip(&after.dampers);
+    let dampers = dampers.map(|(old, new)| (&old.between, &new.between));
+    let taken = springs
+        .chain(dampers)
+        .find(|(old, new)| old != new && same_pair(old, pair));
+    let left = taken.and_then(|(old, new)| old.iter().position(|node| !new.contains(node)));
+    match (taken, left) {
+        (Some((old, new)), Some(left)) => Location::Between(pair.clone().map(|node| {
+            if node == old[left] {
+                new[left].clone()
+            } else {
+                node
+            }
+        })),
+        _ => at.clone(),
     }
 }
 

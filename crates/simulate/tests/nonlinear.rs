@@ -3,6 +3,9 @@
 
 mod support;
 
+use std::f64::consts::TAU;
+
+use simgap_effects::Placed;
 use simgap_model::Location;
 use simgap_simulate::{Run, Simulator, substeps_for};
 use support::{
@@ -307,4 +310,49 @@ bias = 0.001
     let plain = predict(&model(&nominal), &effects[..3], substeps, &bias, &[]);
     let shifted: Vec<f64> = plain[0].iter().map(|x| x + 0.001).collect();
     assert!(largest_difference(&on_top[0], &shifted) < 1e-15);
+}
+
+/// Forces at a member that stands on a support stand on it too: on one that hardly gives way they are those on the
+/// ground, on the mass and in the load cell.
+#[test]
+fn verify_forces_at_a_member_go_with_it_onto_a_support() {
+    let text = [
+        oscillator(2.0, 800.0, 3.0, "ground"),
+        force_input("block"),
+        output("y", "displacement", "block"),
+        force_output("leg", "block", "ground"),
+    ]
+    .concat();
+    let (nominal, leg) = (model(&text), between("ground", "block"));
+    let force = sampled(0.002, 500, |t| 8.0 * (TAU * 4.0 * t).sin());
+    let run = run(0.002, 500, vec![force]);
+    let predicted = |effects: &[Placed]| predict(&nominal, effects, 8, &run, &[0.0, 0.0]);
+    let support = placed(
+        "flexible_support",
+        leg.clone(),
+        &[8e7, 0.01, 0.05, 0.0, 0.0],
+    );
+    for law in [
+        placed("coulomb_friction", leg.clone(), &[2.0]),
+        placed("backlash", leg.clone(), &[4e-3]),
+        placed("cubic_stiffness", leg.clone(), &[1e7]),
+    ] {
+        let kind = law.effect.kind();
+        let on_ground = predicted(std::slice::from_ref(&law));
+        let alone = predicted(std::slice::from_ref(&support));
+        let on_support = predicted(&[support.clone(), law]);
+        for ((ground, support), alone) in on_ground.iter().zip(&on_support).zip(&alone) {
+            // Friction jumps a step earlier or later: one sample is off by all of it.
+            let apart = |other: &[f64]| -> f64 {
+                let pairs = ground.iter().zip(other);
+                pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+            };
+            let size = apart(&vec![0.0; ground.len()]);
+            let (off, without) = (apart(support), apart(alone));
+            assert!(
+                off < 0.05 * size && without > 0.1 * size,
+                "{kind}: off by {off}, without it {without}, of {size}"
+            );
+        }
+    }
 }

@@ -15,8 +15,8 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// cₛ = 2 ζ √(kₛ mₛ)                                   (2)
 /// ```
 ///
-/// k and c are the members of the model at the place; a force that is measured between its nodes is theirs. A
-/// force that drives the mass acts against the ground, not against the support.
+/// k and c are the members of the model at the place; the forces of effects at the place, and a force that is
+/// measured there, go with them. A force that drives the mass acts against the ground, not against the support.
 ///
 /// Reference: `park-mold`, equation (4), for a mold on its support.
 pub(crate) struct FlexibleSupport;
