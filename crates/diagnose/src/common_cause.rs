@@ -18,17 +18,21 @@ pub(crate) fn is_common_cause(
     single: &Hypothesis,
     of_sensors: &Hypothesis,
 ) -> bool {
-    let named = of_sensors.effects().iter().zip(&of_sensors.fit.intervals);
-    let named = named.map(|(placed, intervals)| (placed, &intervals[..]));
+    let named = of_sensors.effects().iter();
     single.effects().len() == 1
-        && on_every_channel(search.problem, &named.collect::<Vec<_>>())
+        && on_every_channel(search.problem, named, &of_sensors.fit.intervals)
         && search.leaves_less(single, COMMON_LEAVES)
 }
 
 /// Whether the same effect of the measurement chain, with the same values, is named on every one of several
-/// channels: its cause is common to them, and lies before the sensors.
-pub(crate) fn on_every_channel(problem: &Problem, named: &[(&Placed, &[Interval])]) -> bool {
+/// channels: its cause is common to them, and lies before the sensors. `intervals` are those of the values of each.
+pub(crate) fn on_every_channel<'a>(
+    problem: &Problem,
+    named: impl Iterator<Item = &'a Placed>,
+    intervals: &[Vec<Interval>],
+) -> bool {
     let channels = problem.model.outputs.len();
+    let named: Vec<(&Placed, &Vec<Interval>)> = named.zip(intervals).collect();
     let of_kind = |kind: &str| {
         let same = named
             .iter()
@@ -90,11 +94,11 @@ at = "block"
                 value: seconds,
                 ci95,
             };
-            (placed, [interval])
+            (placed, vec![interval])
         };
-        let is_common = |lags: &[(Placed, [Interval; 1])]| {
-            let named = lags.iter().map(|(placed, all)| (placed, &all[..]));
-            on_every_channel(&problem, &named.collect::<Vec<_>>())
+        let is_common = |lags: &[(Placed, Vec<Interval>)]| {
+            let (named, intervals): (Vec<_>, Vec<_>) = lags.iter().cloned().unzip();
+            on_every_channel(&problem, named.iter(), &intervals)
         };
         assert!(is_common(&[lag("x", 0.0334), lag("a", 0.0335)]));
         assert!(!is_common(&[lag("x", 0.0334), lag("a", 0.0400)]), "two");

@@ -1,9 +1,10 @@
 //! What is left where a force jumps.
 //!
 //! A force output or an accelerometer beside dry friction jumps when the motion turns or sticks. When exactly,
-//! between two samples, no estimate says, and one sample on the wrong side is off by the whole jump: a true law then leaves much more than noise, in a few samples, and nothing but noise in all others. A
-//! wrong law leaves something in most of them. So what the few worst samples of such a channel leave says nothing
-//! against a law, nor for a further one.
+//! between two samples, no estimate says, and one sample on the wrong side is off by the whole jump: a true law then
+//! leaves much more than noise, in a few samples, and nothing but noise in all others. A wrong law leaves something in
+//! most of them. So what the few worst samples of such a channel leave says nothing against a law, nor for a further
+//! one.
 //!
 //! ```text
 //! V′_c = mean of the squares of all but the worst 3 % / 0.830             (1)
@@ -37,13 +38,18 @@ fn jumping(problem: &Problem) -> Vec<bool> {
     outputs.map(|output| jumps(output.kind)).collect()
 }
 
-/// V of every channel, by (1) where it may jump, or of all samples.
-fn variance(discrepancy: &[Vec<Vec<f64>>], jumping: &[bool], all: bool) -> Vec<f64> {
+/// The excess, (2), with V of all samples.
+fn excess_of_all(discrepancy: &[Vec<Vec<f64>>], noise: &[f64]) -> f64 {
+    excess(&variance(discrepancy, &vec![false; noise.len()]), noise)
+}
+
+/// V of every channel, by (1) where it may jump.
+fn variance(discrepancy: &[Vec<Vec<f64>>], jumping: &[bool]) -> Vec<f64> {
     let of_channel = |(c, jumps): (usize, &bool)| {
         let of_runs = discrepancy.iter().filter_map(|run| run.get(c));
         let mut squares: Vec<f64> = of_runs.flatten().map(|d| d * d).collect();
         let mut factor = 1.0;
-        if *jumps && !all {
+        if *jumps {
             squares.sort_by(f64::total_cmp);
             squares.truncate(kept(squares.len()));
             factor = KEPT_OF_NORMAL;
@@ -66,17 +72,18 @@ fn excess(variance: &[f64], noise: &[f64]) -> f64 {
 
 /// Whether discrepancies stand out of the noise, and hardly do without the worst samples.
 fn is_of_jumps(discrepancy: &[Vec<Vec<f64>>], jumping: &[bool], noise: &[f64]) -> bool {
-    let all = excess(&variance(discrepancy, jumping, true), noise);
-    let between = excess(&variance(discrepancy, jumping, false), noise);
+    let all = excess_of_all(discrepancy, noise);
+    let between = excess(&variance(discrepancy, jumping), noise);
     all > EXCESS && between < SPREAD * all
 }
 
-/// Whether an effect is a law with a dry part: its force jumps when the motion turns.
-fn is_dry(placed: &Placed) -> bool {
-    match placed.action() {
+/// Whether one of the effects is a law with a dry part: its force jumps when the motion turns.
+fn has_friction(effects: &[Placed]) -> bool {
+    let is_dry = |placed: &Placed| match placed.action() {
         Action::Force(law) => law.dry_level(0.0).is_some(),
         _ => false,
-    }
+    };
+    effects.iter().any(is_dry)
 }
 
 /// Whether what a set with dry friction leaves is of jumps, and what it brings beyond a smaller set is there.
@@ -86,11 +93,14 @@ pub(crate) fn brings_jumps_alone(
     smaller: &Hypothesis,
     least: f64,
 ) -> bool {
+    if !has_friction(larger.effects()) {
+        return false;
+    }
     let problem = search.problem;
     let jumping = jumping(problem);
     let left = &larger.fit.discrepancy;
     let noise = noise_variance(left, &stepped(problem, larger.effects()));
-    if !larger.effects().iter().any(is_dry) || !is_of_jumps(left, &jumping, &noise) {
+    if !is_of_jumps(left, &jumping, &noise) {
         return false;
     }
     let channels = jumping.iter().zip(&search.accuracy).enumerate();
@@ -125,14 +135,12 @@ pub(crate) fn gap_between(
     (effects, predictions): (&[Placed], &[Prediction]),
     gap: &Gap,
 ) -> Option<Gap> {
-    let jumping = jumping(check);
+    let between = gap_of_check_between(check, (effects, predictions), gap)?;
     let left = &set.fit.discrepancy;
     let noise = noise_variance(left, &stepped(check, effects));
-    let small = excess(&variance(left, &jumping, true), &noise) <= EXCESS;
-    let is_learnt = small || is_of_jumps(left, &jumping, &noise);
-    is_learnt
-        .then(|| gap_of_check_between(check, (effects, predictions), gap))
-        .flatten()
+    let explains =
+        excess_of_all(left, &noise) <= EXCESS || is_of_jumps(left, &jumping(check), &noise);
+    explains.then_some(between)
 }
 
 /// The same of the check records alone.
@@ -141,17 +149,20 @@ pub(crate) fn gap_of_check_between(
     (effects, predictions): (&[Placed], &[Prediction]),
     gap: &Gap,
 ) -> Option<Gap> {
-    let jumping = jumping(check);
     let [nominal, recalibrated, corrected] = predictions else {
         return None;
     };
+    if !has_friction(effects) {
+        return None;
+    }
+    let jumping = jumping(check);
     let noise = noise_variance(&corrected.discrepancy, &stepped(check, effects));
-    if !effects.iter().any(is_dry) || !is_of_jumps(&corrected.discrepancy, &jumping, &noise) {
+    if !is_of_jumps(&corrected.discrepancy, &jumping, &noise) {
         return None;
     }
     let std = check.output_std();
     let without = |prediction: &Prediction, all: f64| {
-        let channels = variance(&prediction.discrepancy, &jumping, false).into_iter();
+        let channels = variance(&prediction.discrepancy, &jumping).into_iter();
         let nrmse: Vec<f64> = channels.zip(&std).map(|(v, std)| v.sqrt() / std).collect();
         total(&nrmse).min(all)
     };
@@ -186,7 +197,7 @@ mod tests {
     #[test]
     fn verify_the_worst_samples_leave_the_variance_of_noise_as_it_is() {
         let noise = [vec![noise(20_000)]];
-        let [all, between] = [true, false].map(|all| variance(&noise, &[true], all)[0]);
+        let [all, between] = [false, true].map(|jumps| variance(&noise, &[jumps])[0]);
         assert!((between / all - 1.0).abs() < 0.02, "{between} of {all}");
     }
 

@@ -92,11 +92,11 @@ pub(crate) fn add_rivals_out_of_sight(
         .collect::<Result<Vec<_>, _>>()?;
     let mut better: Option<Hypothesis> = None;
     for (i, judged) in judged.iter_mut().enumerate() {
-        let (mut rivals, limits) = found[i].clone();
+        let limits = &found[i].1;
         // What takes the place of several named parameters is a rival of each.
         let lacks = |rival: &&Hypothesis| !rival.key().contains(&name(&judged.placed));
         let all = found.iter().flat_map(|(rivals, _)| rivals);
-        rivals.extend(all.filter(lacks).cloned());
+        let mut rivals: Vec<Hypothesis> = all.filter(lacks).cloned().collect();
         sort(&mut rivals);
         unique(&mut rivals);
         rivals.retain(|rival| identified(rival, settled));

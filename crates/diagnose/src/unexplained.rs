@@ -65,7 +65,7 @@ pub(crate) fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: S
         || leaves_manifold(answer, gap)
         || is_poor_stand_in(answer, gap) && !answer.follows_anew
         || is_of_no_use(answer, gap, status)
-        || is_of_every_sensor(train, answer)
+        || on_every_channel(train, answer.named(), &answer.estimate.intervals)
     {
         return true;
     }
@@ -246,11 +246,4 @@ fn is_of_no_use(answer: &Answer, gap: &Gap, status: Status) -> bool {
         && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < OF_SOME_USE
         && !explains_all_it_saw(answer, gap)
         && !answer.follows_anew
-}
-
-/// Whether the same fault of every sensor is named.
-fn is_of_every_sensor(train: &Problem, answer: &Answer) -> bool {
-    let all = answer.judged.iter().zip(&answer.estimate.intervals);
-    let named = all.map(|(judged, intervals)| (&judged.placed, &intervals[..]));
-    on_every_channel(train, &named.collect::<Vec<_>>())
 }

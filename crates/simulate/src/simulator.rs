@@ -1,5 +1,7 @@
 //! The model with its effects, ready to be marched through runs.
 
+use std::borrow::Cow;
+
 use simgap_effects::{Action, Placed, Sampled, SignalMap};
 use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, Snapshot};
 use simgap_model::{Location, Model, Node, same_pair};
@@ -95,20 +97,22 @@ impl Simulator {
         }
         // A hidden mass may take a member from its place: what changes members has come first, and the forces at the
         // member go with it.
-        let before = model.clone();
+        let before = (!modes.is_empty()).then(|| model.clone());
         let mut added = Vec::new();
         for (at, change, start) in modes {
-            let before = model.dof_count();
+            let known = model.dof_count();
             change(&mut model, at);
-            added.extend((before..model.dof_count()).map(|_| start));
+            added.extend((known..model.dof_count()).map(|_| start));
         }
+        let place = |at| match &before {
+            Some(before) => moved(before, &model, at),
+            None => Cow::Borrowed(at),
+        };
+        let laws = laws.into_iter().map(|(at, law)| (place(at), law));
+        let mut laws: Vec<_> = laws.collect();
         // The members as all changes of the model leave them.
-        let mut laws: Vec<_> = laws
-            .into_iter()
-            .map(|(at, law)| (moved(&before, &model, at), law))
-            .collect();
         laws.extend(builders.into_iter().map(|(at, build)| {
-            let at = moved(&before, &model, at);
+            let at = place(at);
             let law = build(&model, &at);
             (at, law)
         }));
@@ -132,7 +136,7 @@ impl Simulator {
         for (at, law) in laws {
             let [a, b] = ends(&model, &at)?;
             elements.push(Element { a, b, law });
-            carried.push(matches!(at, Location::Between(_)));
+            carried.push(matches!(*at, Location::Between(_)));
         }
         Ok(Simulator {
             outputs: output_plans(&model, &elements, &carried)?,
@@ -349,9 +353,9 @@ impl Simulator {
 }
 
 /// Where a force between two nodes acts once a member between them has been taken to another node.
-fn moved(before: &Model, after: &Model, at: &Location) -> Location {
+fn moved<'a>(before: &Model, after: &Model, at: &'a Location) -> Cow<'a, Location> {
     let Location::Between(pair) = at else {
-        return at.clone();
+        return Cow::Borrowed(at);
     };
     let springs = before.springs.iter().zip(&after.springs);
     let springs = springs.map(|(old, new)| (&old.between, &new.between));
@@ -361,16 +365,11 @@ fn moved(before: &Model, after: &Model, at: &Location) -> Location {
         .chain(dampers)
         .find(|(old, new)| old != new && same_pair(old, pair));
     let left = taken.and_then(|(old, new)| old.iter().position(|node| !new.contains(node)));
-    match (taken, left) {
-        (Some((old, new)), Some(left)) => Location::Between(pair.clone().map(|node| {
-            if node == old[left] {
-                new[left].clone()
-            } else {
-                node
-            }
-        })),
-        _ => at.clone(),
-    }
+    let (Some((old, new)), Some(left)) = (taken, left) else {
+        return Cow::Borrowed(at);
+    };
+    let node_now = |node: &String| if *node == old[left] { &new[left] } else { node }.clone();
+    Cow::Owned(Location::Between(pair.each_ref().map(node_now)))
 }
 
 fn ends(model: &Model, at: &Location) -> Result<[Node; 2], SimulateError> {
