@@ -10,7 +10,7 @@ use simgap_simulate::{Job, predict_all};
 use crate::fit::{Merit, fit_with, state_scale};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, Signals, linearise};
-use crate::normal::{inner, normal_equations};
+use crate::normal::{inner, inner_products, normal_equations};
 use crate::reach::Reach;
 use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 
@@ -168,13 +168,24 @@ impl Base<'_> {
         let mut own = Mat::<f64>::zeros(k, k);
         let mut right = vec![0.0; k];
         for run in 0..self.at.discrepancy.len() {
-            for (j, column) in columns.iter().enumerate() {
-                right[j] += inner(&column[run], &self.at.discrepancy[run], &self.weights);
-                for (row, nuisance) in self.layout.entries(run).zip(&self.at.columns[run]) {
-                    cross[(row, j)] += inner(nuisance, &column[run], &self.weights);
+            let trials: Vec<&Signals> = columns.iter().map(|column| &column[run]).collect();
+            let nuisance = self.at.columns[run].iter().map(AsRef::as_ref);
+            let rows: Vec<usize> = self.layout.entries(run).take(nuisance.len()).collect();
+            let discrepancy = [&self.at.discrepancy[run]];
+            let others: Vec<&Signals> = nuisance
+                .chain(trials.iter().copied())
+                .chain(discrepancy)
+                .collect();
+            let (first, last) = (rows.len(), rows.len() + k);
+            let is_wanted = |j: usize, other: usize| other <= first + j || other == last;
+            let products = inner_products(&trials, &others, &self.weights, is_wanted);
+            for j in 0..k {
+                right[j] += products[(j, last)];
+                for (place, &row) in rows.iter().enumerate() {
+                    cross[(row, j)] += products[(j, place)];
                 }
-                for (i, other) in columns.iter().enumerate() {
-                    own[(i, j)] += inner(&other[run], &column[run], &self.weights);
+                for i in 0..k {
+                    own[(i, j)] += products[(i.max(j), first + i.min(j))];
                 }
             }
         }

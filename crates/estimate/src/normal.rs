@@ -8,20 +8,33 @@ use crate::layout::Layout;
 use crate::linearise::{Linearised, Signals};
 
 /// Running sums of a dot product: enough additions that do not wait for each other.
-const SUMS: usize = 16;
+const SUMS: usize = 32;
 
-/// Σ xᵢ yᵢ.
+/// Σ xᵢ yᵢ, to the last bit the same whatever instructions the processor has.
 pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
-    let mut sums = [0.0; SUMS];
-    let (xs, ys) = (x.chunks_exact(SUMS), y.chunks_exact(SUMS));
-    let rest = xs.remainder().iter().zip(ys.remainder());
-    let rest: f64 = rest.map(|(p, q)| p * q).sum();
-    for (p, q) in xs.zip(ys) {
-        for k in 0..SUMS {
-            sums[k] += p[k] * q[k];
+    pulp::Arch::new().dispatch(Dot(x, y))
+}
+
+/// [`dot`] in the best instructions there are.
+struct Dot<'a>(&'a [f64], &'a [f64]);
+
+impl pulp::WithSimd for Dot<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> f64 {
+        let Dot(x, y) = self;
+        let mut sums = [0.0; SUMS];
+        let (xs, ys) = (x.chunks_exact(SUMS), y.chunks_exact(SUMS));
+        let rest = xs.remainder().iter().zip(ys.remainder());
+        let rest: f64 = rest.map(|(p, q)| p * q).sum();
+        for (p, q) in xs.zip(ys) {
+            for k in 0..SUMS {
+                sums[k] += p[k] * q[k];
+            }
         }
+        sums.iter().sum::<f64>() + rest
     }
-    sums.iter().sum::<f64>() + rest
 }
 
 /// Weighted inner product of two sets of signals.
@@ -31,6 +44,47 @@ pub(crate) fn inner(a: &Signals, b: &Signals, weights: &[f64]) -> f64 {
         .zip(weights)
         .map(|((x, y), w)| w * dot(x, y))
         .sum()
+}
+
+/// Samples of every signal that are multiplied before the next are looked at: they stay in the cache.
+const BLOCK: usize = 1024;
+
+/// Weighted inner products of each set of signals on the left with each on the right, where wanted; zero elsewhere.
+pub(crate) fn inner_products(
+    left: &[&Signals],
+    right: &[&Signals],
+    weights: &[f64],
+    is_wanted: impl Fn(usize, usize) -> bool + Sync,
+) -> Mat<f64> {
+    let lengths = || left.iter().flat_map(|signals| signals.iter().map(Vec::len));
+    let len = lengths().max().unwrap_or(0);
+    let cells = || {
+        let all = (0..left.len()).flat_map(|i| (0..right.len()).map(move |j| (i, j)));
+        all.filter(|&(i, j)| is_wanted(i, j))
+    };
+    let part = |signal: &Vec<f64>, block: usize| -> std::ops::Range<usize> {
+        let start = (block * BLOCK).min(signal.len());
+        start..(start + BLOCK).min(signal.len())
+    };
+    let of_block = |block: usize| -> Vec<f64> {
+        let product = |(i, j): (usize, usize)| {
+            let channels = left[i].iter().zip(right[j]).zip(weights);
+            let product = |((x, y), w): ((&Vec<f64>, &Vec<f64>), &f64)| {
+                w * dot(&x[part(x, block)], &y[part(y, block)])
+            };
+            channels.map(product).sum::<f64>()
+        };
+        cells().map(product).collect()
+    };
+    let blocks = (0..len.div_ceil(BLOCK)).into_par_iter().map(of_block);
+    let mut products = Mat::zeros(left.len(), right.len());
+    // In the order of the blocks, whatever thread they came from.
+    for block in blocks.collect::<Vec<_>>() {
+        for ((i, j), value) in cells().zip(block) {
+            products[(i, j)] += value;
+        }
+    }
+    products
 }
 
 /// H = Jᵀ W J + prior, g = Jᵀ W r − prior gradient, in units of the scales.
@@ -45,17 +99,17 @@ pub(crate) fn normal_equations(
     let mut gradient = vec![0.0; len];
     for (run, columns) in at.columns.iter().enumerate() {
         let index = layout.entries(run).collect::<Vec<_>>();
-        let rows = columns.par_iter().enumerate().map(|(a, column)| {
-            let products = columns[..=a].iter();
-            let row: Vec<f64> = products.map(|b| inner(column, b, weights)).collect();
-            (row, inner(column, &at.discrepancy[run], weights))
-        });
-        for (a, (row, right)) in rows.collect::<Vec<_>>().into_iter().enumerate() {
-            gradient[index[a]] += right;
-            for (b, value) in row.into_iter().enumerate() {
-                hessian[(index[a], index[b])] += value;
+        let columns: Vec<&Signals> = columns.iter().map(AsRef::as_ref).collect();
+        let last = columns.len();
+        let with_discrepancy = [&columns[..], &[&at.discrepancy[run]]].concat();
+        let is_wanted = |a: usize, b: usize| b <= a || b == last;
+        let products = inner_products(&columns, &with_discrepancy, weights, is_wanted);
+        for a in 0..last {
+            gradient[index[a]] += products[(a, last)];
+            for b in 0..=a {
+                hessian[(index[a], index[b])] += products[(a, b)];
                 if a != b {
-                    hessian[(index[b], index[a])] += value;
+                    hessian[(index[b], index[a])] += products[(a, b)];
                 }
             }
         }

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use simgap_integrate::exact::lanes::{Batch, LaneObserver, LaneSet, LaneSnapshot};
 use simgap_integrate::exact::{
-    Element, ExactPropagator, Excitation, ForceLaw, MemberMotion, Snapshot,
+    Element, ExactPropagator, Excitation, Followed, ForceLaw, MemberMotion, Snapshot,
 };
 use simgap_model::{Node, StructuralMatrices};
 
@@ -68,6 +68,57 @@ impl ForceLaw for Slip {
     }
 }
 
+/// As [`Slip`] without the clock, followed in strides; slower against its force.
+struct Strides {
+    stiffness: f64,
+    limit: f64,
+    stride: f64,
+}
+
+impl ForceLaw for Strides {
+    simgap_integrate::lanes!(stiffness, limit, stride);
+
+    fn force(&self, _: MemberMotion) -> f64 {
+        0.0
+    }
+
+    fn remembers(&self) -> bool {
+        true
+    }
+
+    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+        let mut at = self.follow_step(memory, 1.0, from, to);
+        while at.left > 0.0 {
+            at = self.follow_step(at.memory, at.left, from, to);
+        }
+        (at.force, at.memory)
+    }
+
+    fn follow_step(
+        &self,
+        memory: f64,
+        left: f64,
+        from: MemberMotion,
+        to: MemberMotion,
+    ) -> Followed {
+        let moved = to.displacement - from.displacement;
+        let way = moved.abs() * left;
+        let went = way.min(self.stride);
+        let share = if memory * moved < 0.0 { 0.5 } else { 1.0 };
+        let force = memory + share * self.stiffness * went.copysign(moved);
+        let memory = force.max(-self.limit).min(self.limit);
+        Followed {
+            force: memory,
+            memory,
+            left: if went < way {
+                left * (1.0 - went / way)
+            } else {
+                0.0
+            },
+        }
+    }
+}
+
 /// As [`Cubic`] without lanes of its own.
 struct Alone(Cubic);
 
@@ -127,7 +178,13 @@ fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], samples: usize) 
                 level: 2.0 * size,
                 excess: size,
             }),
-            2 => Box::new(Slip {
+            // Sets beside each other may follow the same member in different ways.
+            3 | 4 if *kind == 3 || number(6) > 0.0 => Box::new(Strides {
+                stiffness: 60.0 * size,
+                limit: 3.0 * size,
+                stride: 0.004 * size,
+            }),
+            2 | 4 => Box::new(Slip {
                 stiffness: 60.0 * size,
                 limit: 3.0 * size,
             }),
@@ -249,7 +306,7 @@ proptest! {
     #[test]
     fn prop_lanes_are_the_sets_to_the_last_bit(
         n in 1_usize..6,
-        laws in proptest::collection::vec(0_u8..4, 0..4),
+        laws in proptest::collection::vec(0_u8..6, 0..4),
         substeps in 1_usize..4,
         numbers in proptest::collection::vec(
             (proptest::collection::vec(-1.0_f64..1.0, 7), 1_usize..60), 1..20),

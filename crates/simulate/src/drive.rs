@@ -11,8 +11,8 @@ pub(crate) struct Drive {
     /// What the propagator joins by straight lines, such that they push as the smooth curve through the
     /// samples does.
     pub(crate) dof_force: Vec<f64>,
-    /// What the force at a sample is beyond that.
-    pub(crate) at_sample: Vec<f64>,
+    /// What the force at each sample is beyond that, for each mass that is driven.
+    pub(crate) beyond: Vec<(usize, Vec<f64>)>,
     pub(crate) base_displacement: Vec<f64>,
     pub(crate) base_velocity: Vec<f64>,
     pub(crate) base_acceleration: Vec<f64>,
@@ -102,7 +102,8 @@ impl Simulator {
             })
             .collect();
         let interleave = |k: usize| -> Vec<f64> {
-            (0..run.len)
+            let samples = if motion.is_empty() { 0 } else { run.len };
+            (0..samples)
                 .flat_map(|s| motion.iter().map(move |base| base[k][s]))
                 .collect()
         };
@@ -115,7 +116,7 @@ impl Simulator {
                 drive.dof_force[sample * n + coupling.dof] += coupling.coefficient * value;
             }
         }
-        drive.at_sample = straighten(&mut drive.dof_force, n);
+        drive.beyond = straighten(&mut drive.dof_force, n);
         Ok(drive)
     }
 
@@ -148,7 +149,7 @@ impl Simulator {
 }
 
 /// Replaces sampled forces on n masses by those whose straight lines push as the smooth curve through the
-/// samples does; returns what was taken away, sample by sample.
+/// samples does; returns what was taken away, sample by sample, for each mass where it is not zero throughout.
 ///
 /// Straight lines between the samples of e^(iωt) are sinc²(ωh/2) of it, and harmonics about the sample rate,
 /// which masses do not follow. With s = sin²(ωh/2) = −δ²/4, the inverse is
@@ -159,22 +160,27 @@ impl Simulator {
 ///
 /// off by 0.01 % at ten samples a cycle, where straight lines lose 3 %. Of a pulse, the sum and the first
 /// moment of what is taken away are zero. The last two samples at each end stay as they are.
-fn straighten(force: &mut [f64], n: usize) -> Vec<f64> {
-    let mut taken = vec![0.0; force.len()];
+fn straighten(force: &mut [f64], n: usize) -> Vec<(usize, Vec<f64>)> {
+    let mut beyond = Vec::new();
     for dof in 0..n {
-        let at = |i: usize| force[i * n + dof];
-        for i in 2..(force.len() / n).saturating_sub(2) {
-            let near = at(i - 1) + at(i + 1);
-            let far = at(i - 2) + at(i + 2);
-            let second = near - 2.0 * at(i);
-            let fourth = far - 4.0 * near + 6.0 * at(i);
-            taken[i * n + dof] = second / 12.0 - fourth / 90.0;
+        let of_dof: Vec<f64> = force.iter().skip(dof).step_by(n).copied().collect();
+        if of_dof.iter().all(|value| *value == of_dof[0]) {
+            continue;
         }
+        let mut taken = vec![0.0; of_dof.len()];
+        for (taken, f) in taken.iter_mut().skip(2).zip(of_dof.windows(5)) {
+            let near = f[1] + f[3];
+            let far = f[0] + f[4];
+            let second = near - 2.0 * f[2];
+            let fourth = far - 4.0 * near + 6.0 * f[2];
+            *taken = second / 12.0 - fourth / 90.0;
+        }
+        for (force, taken) in force.iter_mut().skip(dof).step_by(n).zip(&taken) {
+            *force -= taken;
+        }
+        beyond.push((dof, taken));
     }
-    for (force, taken) in force.iter_mut().zip(&taken) {
-        *force -= taken;
-    }
-    taken
+    beyond
 }
 
 /// First derivative of a sampled signal by five-point central differences,
@@ -264,15 +270,26 @@ mod tests {
         let pulse = |i: u8| f64::from(u8::from((13..17).contains(&i)));
         let mut force: Vec<f64> = (0..30).map(pulse).collect();
         let before = force.clone();
-        let taken = straighten(&mut force, 1);
+        let beyond = straighten(&mut force, 1);
+        let [(0, taken)] = &beyond[..] else {
+            panic!("one mass is driven");
+        };
         let sum: f64 = taken.iter().sum();
         let moment: f64 = taken.iter().enumerate().map(|(i, t)| i as f64 * t).sum();
         assert!(sum.abs() < 1e-14 && moment.abs() < 1e-12, "{sum} {moment}");
-        for ((now, taken), before) in force.iter().zip(&taken).zip(before) {
+        for ((now, taken), before) in force.iter().zip(taken).zip(before) {
             assert!((now + taken - before).abs() < 1e-15);
         }
-        assert_eq!(straighten(&mut [1.0, 5.0, 2.0], 1), [0.0; 3]);
-        assert_eq!(straighten(&mut [], 0), [0.0; 0]);
+        assert_eq!(straighten(&mut [1.0, 5.0, 2.0], 1), [(0, vec![0.0; 3])]);
+        assert_eq!(straighten(&mut [], 0), []);
+        // Two masses, of which the second is driven by a pulse.
+        let mut force = [3.0, 0.0, 3.0, 0.0, 3.0, 1.0, 3.0, 0.0, 3.0, 0.0];
+        let beyond = straighten(&mut force, 2);
+        assert_eq!(beyond.len(), 1);
+        assert_eq!(
+            (beyond[0].0, force[4], force[5]),
+            (1, 3.0, 1.0 - beyond[0].1[2])
+        );
     }
 
     /// Ten thirds of a metre, computed in two ways.

@@ -65,21 +65,14 @@ impl OutputPlan {
         base: &LaneBase<'_>,
         [stiffness, damping]: &[Pack; 2],
     ) -> Pack {
-        let across = |dofs: &[Pack], of_base: &dyn Fn(usize) -> Pack| {
-            let value = |node| match node {
-                Node::Ground => Pack::ZERO,
-                Node::Dof(i) => dofs[i],
-                Node::Base(i) => of_base(i),
-            };
-            let (a, b) = (value(self.a), value(self.b));
-            Pack::of(|l| a.0[l] - b.0[l])
-        };
-        let displacement = || across(at.displacement, &|i| at.base_displacement[i]);
-        let velocity = || across(at.velocity, &|i| at.base_velocity[i]);
+        let displacement = || self.across_lanes(at.displacement, |i| at.base_displacement[i]);
+        let velocity = || self.across_lanes(at.velocity, |i| at.base_velocity[i]);
         match self.kind {
             OutputKind::Displacement => displacement(),
             OutputKind::Velocity => velocity(),
-            OutputKind::Acceleration => across(at.acceleration, &|i| base.acceleration(i)),
+            OutputKind::Acceleration => {
+                self.across_lanes(at.acceleration, |i| base.acceleration(i))
+            }
             OutputKind::Force => {
                 let (x, v) = (displacement(), velocity());
                 let mut on_top = Pack([-0.0; LANES]);
@@ -90,6 +83,18 @@ impl OutputPlan {
                 Pack::of(|l| stiffness.0[l] * x.0[l] + damping.0[l] * v.0[l] + on_top.0[l])
             }
         }
+    }
+
+    /// Difference between the two nodes.
+    #[inline(always)]
+    fn across_lanes(&self, dofs: &[Pack], of_base: impl Fn(usize) -> Pack) -> Pack {
+        let value = |node| match node {
+            Node::Ground => Pack::ZERO,
+            Node::Dof(i) => dofs[i],
+            Node::Base(i) => of_base(i),
+        };
+        let (a, b) = (value(self.a), value(self.b));
+        Pack::of(|l| a.0[l] - b.0[l])
     }
 
     pub(crate) fn needs_acceleration(&self) -> bool {

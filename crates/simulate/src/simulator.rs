@@ -259,11 +259,23 @@ impl Simulator {
         predicted
     }
 
-    /// Adds what the force at a sample accelerates beyond that of the straight lines.
+    /// Adds what the force at a sample accelerates beyond that of the straight lines, `gᵀ Δf` with g the output of
+    /// unit forces.
     fn accelerate(&self, ready: &Prepared, predicted: &mut [Vec<f64>]) {
-        if !self.outputs.iter().any(OutputPlan::needs_acceleration) {
-            return;
+        let plans = predicted.iter_mut().zip(&self.outputs);
+        for (signal, plan) in plans.filter(|(_, plan)| plan.needs_acceleration()) {
+            let per_force = self.accelerations_per_force(ready, plan);
+            for (dof, forces) in &ready.drive.beyond {
+                let g = per_force[*dof];
+                for (value, force) in signal.iter_mut().zip(forces) {
+                    *value += g * force;
+                }
+            }
         }
+    }
+
+    /// What an output of the acceleration reads off a unit force on each degree of freedom, 1/kg.
+    fn accelerations_per_force(&self, ready: &Prepared, plan: &OutputPlan) -> Vec<f64> {
         let n = self.model.dof_count();
         let (rest, bases) = (vec![0.0; n], vec![0.0; ready.drive.base_count]);
         let base = BaseMotion {
@@ -271,24 +283,21 @@ impl Simulator {
             velocity: &bases,
             acceleration: &bases,
         };
-        let mut acceleration = vec![0.0; n];
-        for (sample, force) in ready.drive.at_sample.chunks_exact(n.max(1)).enumerate() {
+        let (mut force, mut acceleration) = (vec![0.0; n], vec![0.0; n]);
+        let mut unit = |dof: usize| {
+            force.fill(0.0);
+            force[dof] = 1.0;
             let at = Snapshot {
-                sample,
+                sample: 0,
                 displacement: &rest,
                 velocity: &rest,
-                dof_force: force,
+                dof_force: &force,
                 element_force: &[],
             };
             ready.propagator.acceleration(&at, &mut acceleration);
-            for (signal, plan) in predicted.iter_mut().zip(&self.outputs) {
-                if plan.needs_acceleration()
-                    && let Some(value) = signal.get_mut(sample)
-                {
-                    *value += plan.read(&at, &acceleration, &base);
-                }
-            }
-        }
+            plan.read(&at, &acceleration, &base)
+        };
+        (0..n).map(&mut unit).collect()
     }
 
     /// Motion across a location along a run: between its two nodes, or of a mass.
@@ -307,9 +316,9 @@ impl Simulator {
         let n = self.model.dof_count();
         let (mut acceleration, mut force) = (vec![0.0; n], vec![0.0; n]);
         self.march(run, &ready, |at, base| {
-            let beyond = &ready.drive.at_sample[at.sample * n..];
-            for ((force, on_lines), beyond) in force.iter_mut().zip(at.dof_force).zip(beyond) {
-                *force = on_lines + beyond;
+            force.copy_from_slice(at.dof_force);
+            for (dof, forces) in &ready.drive.beyond {
+                force[*dof] += forces[at.sample];
             }
             let at = &Snapshot {
                 dof_force: &force,

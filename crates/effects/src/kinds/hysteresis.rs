@@ -1,6 +1,6 @@
 //! A spring that remembers its way (Bouc-Wen).
 
-use simgap_integrate::exact::{ForceLaw, MemberMotion};
+use simgap_integrate::exact::{Followed, ForceLaw, MemberMotion};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
@@ -48,42 +48,45 @@ impl Law {
         1.0 - yielding * power(y.abs(), self.exponent)
     }
 
-    /// (2) by the classical Runge-Kutta method, from y over the way `left`.
+    /// One step of (2) by the classical Runge-Kutta method, from y where the way `left` is ahead: y after it and
+    /// how far it went.
     #[inline(always)]
-    fn advance(&self, mut y: f64, mut left: f64) -> f64 {
+    fn step(&self, y: f64, left: f64) -> (f64, f64) {
         let longest = STEP / self.exponent;
         // Against its own force z moves this much faster at most.
         let back = longest / (2.0 * self.loop_share).max(1.0);
-        while left > 0.0 && y < LEVEL {
-            let h = left.min(if y < 0.0 { back } else { longest });
-            let k1 = self.slope(y);
-            let k2 = self.slope(y + 0.5 * h * k1);
-            let k3 = self.slope(y + 0.5 * h * k2);
-            let k4 = self.slope(y + h * k3);
-            let next = y + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-            if y < 0.0 && next > 0.0 {
-                // (2) has a kink at zero: the step ends there.
-                left -= self.way_to_zero(y);
-                y = 0.0;
-            } else {
-                left -= h;
-                y = next;
-            }
-        }
-        y.clamp(-1.0, 1.0)
+        let h = left.min(if y < 0.0 { back } else { longest });
+        let k1 = self.slope(y);
+        let k2 = self.slope(y + 0.5 * h * k1);
+        let k3 = self.slope(y + 0.5 * h * k2);
+        let k4 = self.slope(y + h * k3);
+        let next = y + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        // (2) has a kink at zero: the step ends there.
+        let crosses = y < 0.0 && next > 0.0;
+        let to_zero = self.way_to_zero(y);
+        (
+            if crosses { 0.0 } else { next },
+            if crosses { to_zero } else { h },
+        )
     }
 
     /// The way ∫ dy / (dy/dx) from y < 0 to zero, by the rule of Gauss with three points.
     #[inline(always)]
     fn way_to_zero(&self, y: f64) -> f64 {
         const OFF_MIDDLE: f64 = 0.774_596_669_241_483_4; // √(3/5)
-        let per = |share: f64| 1.0 / self.slope(share * y);
-        let ends = per(0.5 * (1.0 - OFF_MIDDLE)) + per(0.5 * (1.0 + OFF_MIDDLE));
-        -y * (5.0 * ends + 8.0 * per(0.5)) / 18.0
+        let slope = |share: f64| self.slope(share * y);
+        let ends = [
+            slope(0.5 * (1.0 - OFF_MIDDLE)),
+            slope(0.5 * (1.0 + OFF_MIDDLE)),
+        ];
+        let (both, middle) = (ends[0] * ends[1], slope(0.5));
+        // 5/a + 5/b + 8/c in one division.
+        -y * (5.0 * (ends[0] + ends[1]) * middle + 8.0 * both) / (18.0 * both * middle)
     }
 }
 
 /// |z|ⁿ for a whole n up to 4; between whole numbers linear in n, which costs no logarithm.
+#[inline(always)]
 fn power(size: f64, exponent: f64) -> f64 {
     let square = size * size;
     let (below, share) = if exponent < 2.0 {
@@ -111,15 +114,42 @@ impl ForceLaw for Law {
         self.start
     }
 
-    /// (2) along the move; the memory is z / u_y.
     fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
-        let moved = (to.displacement - from.displacement) / self.yield_displacement;
-        let mut z = memory;
-        if moved != 0.0 && !moved.is_nan() {
-            let s = moved.signum();
-            z = s * self.advance(s * memory, moved.abs());
+        let mut at = self.follow_step(memory, 1.0, from, to);
+        while at.left > 0.0 {
+            at = self.follow_step(at.memory, at.left, from, to);
         }
-        (self.stiffness * self.yield_displacement * z, z)
+        (at.force, at.memory)
+    }
+
+    /// (2) along the move; the memory is z / u_y.
+    #[inline(always)]
+    fn follow_step(
+        &self,
+        memory: f64,
+        left: f64,
+        from: MemberMotion,
+        to: MemberMotion,
+    ) -> Followed {
+        let moved = (to.displacement - from.displacement) / self.yield_displacement;
+        let (s, way) = (moved.signum(), moved.abs() * left);
+        let y = s * memory;
+        let ahead = way > 0.0 && y < LEVEL;
+        let (next, went) = self.step(y, way);
+        let z = if ahead {
+            s * next.clamp(-1.0, 1.0)
+        } else {
+            memory
+        };
+        Followed {
+            force: self.stiffness * self.yield_displacement * z,
+            memory: z,
+            left: if ahead && went < way {
+                left * (1.0 - went / way)
+            } else {
+                0.0
+            },
+        }
     }
 }
 

@@ -18,18 +18,19 @@ const SHARES: [f64; 3] = [0.05, 0.2, 0.6];
 struct Law {
     sliding: f64,
     excess: f64,
-    velocity: f64,
+    /// 1/vs: a product costs less than a quotient.
+    per_velocity: f64,
 }
 
 impl ForceLaw for Law {
-    lanes!(sliding, excess, velocity);
+    lanes!(sliding, excess, per_velocity);
 
     fn force(&self, _: MemberMotion) -> f64 {
         0.0
     }
 
     fn dry_level(&self, speed: f64) -> Option<f64> {
-        let ratio = speed / self.velocity;
+        let ratio = speed * self.per_velocity;
         Some(self.sliding + self.excess * elementary::exp(-ratio * ratio))
     }
 }
@@ -123,7 +124,7 @@ impl Effect for StribeckFriction {
         Action::Force(Box::new(Law {
             sliding: values[0],
             excess: values[1] - values[0],
-            velocity: values[2],
+            per_velocity: 1.0 / values[2],
         }))
     }
 

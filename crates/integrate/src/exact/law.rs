@@ -15,6 +15,17 @@ pub struct MemberMotion {
     pub time_s: f64,
 }
 
+/// Where a law that remembers is on its way along a move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Followed {
+    /// The single-valued part, N.
+    pub force: f64,
+    /// What it remembers.
+    pub memory: f64,
+    /// Share of the move that is still ahead; zero at the end of the move.
+    pub left: f64,
+}
+
 /// A force carried between two nodes, positive when it resists a positive displacement of a from
 /// b, as a spring's `k d` does: it pushes a with −F and b with +F.
 ///
@@ -42,6 +53,25 @@ pub trait ForceLaw: Any + Send + Sync {
     fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
         let _ = from;
         (self.force(to), memory)
+    }
+
+    /// One step of [`ForceLaw::follow`] for a law that follows a long move in several: from the memory
+    /// where the share `left` of the move is ahead, one at its start. A law with nothing left stays.
+    /// Without exits or calls it becomes vector instructions where sets are marched side by side.
+    fn follow_step(
+        &self,
+        memory: f64,
+        left: f64,
+        from: MemberMotion,
+        to: MemberMotion,
+    ) -> Followed {
+        let _ = left;
+        let (force, memory) = self.follow(memory, from, to);
+        Followed {
+            force,
+            memory,
+            left: 0.0,
+        }
     }
 
     /// Largest dry force at the sliding speed |v| (m/s), N, not negative; `None` for a law

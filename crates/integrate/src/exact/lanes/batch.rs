@@ -233,17 +233,23 @@ impl<'a> Lanes<'a> {
 
     /// Takes the excitation at a sample; a set that is over stays at its last.
     #[inline(always)]
-    fn load(&mut self, sample: usize) {
-        let n = self.force[0].len();
+    fn load(&mut self, n: usize, sample: usize) {
         let bases = self.base[0].len() / 2;
-        self.force.swap(0, 1);
-        self.base.swap(0, 1);
+        // Copied, not swapped: the next loads would wait for the pointers.
+        let [before, after] = &mut self.force;
+        before[..n].copy_from_slice(&after[..n]);
+        if bases > 0 {
+            let [before, after] = &mut self.base;
+            before.copy_from_slice(after);
+        }
         let at = At {
             sample,
             counts: &self.counts,
             shared: self.shared,
         };
-        at.fill(n, &mut self.force[1], |l| self.excitations[l].dof_force);
+        at.fill(n, &mut self.force[1][..n], |l| {
+            self.excitations[l].dof_force
+        });
         if bases > 0 {
             let (x, v) = self.base[1].split_at_mut(bases);
             at.fill(bases, x, |l| self.excitations[l].base_displacement);
@@ -253,12 +259,22 @@ impl<'a> Lanes<'a> {
 
     /// Puts the excitation at two shares of the sample interval in place.
     #[inline(always)]
-    fn interpolate<S: Simd>(&mut self, simd: S, start: f64, end: f64) {
-        let [from, to] = &self.force;
-        between(simd, from, to, start, &mut self.block.before);
-        between(simd, from, to, end, &mut self.block.after);
+    fn interpolate<S: Simd>(&mut self, simd: S, n: usize, start: f64, end: f64) {
+        let [from, to] = [&self.force[0][..n], &self.force[1][..n]];
+        between(simd, from, to, start, &mut self.block.before[..n]);
+        between(simd, from, to, end, &mut self.block.after[..n]);
         let [from, to] = &self.base;
         between(simd, from, to, end, &mut self.block.base);
+    }
+
+    /// Puts the excitation at both ends of the sample interval in place.
+    #[inline(always)]
+    fn take_whole(&mut self, n: usize) {
+        self.block.before[..n].copy_from_slice(&self.force[0][..n]);
+        self.block.after[..n].copy_from_slice(&self.force[1][..n]);
+        if !self.base[1].is_empty() {
+            self.block.base.copy_from_slice(&self.base[1]);
+        }
     }
 }
 
@@ -297,21 +313,26 @@ fn march<const N: usize, S: Simd>(
         .first()
         .map_or(1, |lanes| lanes.excitations[0].substeps.max(1));
     let share = 1.0 / substeps as f64;
+    let dofs = all.first().map_or(0, |lanes| lanes.force[0].len());
+    let n = if N == 0 { dofs } else { N };
     for sample in 0..sample_count {
         for lanes in all.iter_mut() {
-            lanes.load(sample);
+            lanes.load(n, sample);
         }
         for sub in 0..if sample == 0 { 0 } else { substeps } {
-            let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
             let steps = (sample - 1) * substeps + sub + 1;
             for lanes in all.iter_mut() {
-                let n = if N == 0 { lanes.force[0].len() } else { N };
-                lanes.interpolate(simd, start, end);
+                if substeps == 1 {
+                    lanes.take_whole(n);
+                } else {
+                    let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
+                    lanes.interpolate(simd, n, start, end);
+                }
                 lanes.block.step(simd, n, steps);
             }
         }
         for lanes in all.iter_mut() {
-            observe(simd, lanes, sample, observer);
+            observe(simd, n, lanes, sample, observer);
         }
     }
 }
@@ -319,19 +340,21 @@ fn march<const N: usize, S: Simd>(
 #[inline(always)]
 fn observe<S: Simd>(
     simd: S,
+    n: usize,
     lanes: &mut Lanes<'_>,
     sample: usize,
     observer: &mut impl LaneObserver,
 ) {
-    let n = lanes.force[0].len();
     let block = &mut lanes.block;
-    block.after.copy_from_slice(&lanes.force[1]);
-    block.load(simd, &mut lanes.carried);
-    let (displacement, velocity) = block.state.split_at(n);
+    block.after[..n].copy_from_slice(&lanes.force[1][..n]);
+    block.load(simd, n, &mut lanes.carried);
+    let (displacement, velocity) = block.state[..2 * n].split_at(n);
     let (base_displacement, base_velocity) = lanes.base[1].split_at(lanes.base[1].len() / 2);
     let acceleration = if observer.needs_acceleration() {
         let at = [displacement, velocity, &block.net];
-        block.kernel.acceleration(simd, at, &mut lanes.acceleration);
+        block
+            .kernel
+            .acceleration(simd, n, at, &mut lanes.acceleration);
         &lanes.acceleration[..]
     } else {
         &[]

@@ -160,7 +160,8 @@ impl<'a> Block<'a> {
             self.solve(simd, n, steps as f64);
             self.push(simd, n);
         }
-        std::mem::swap(&mut self.state, &mut self.next);
+        // Copied, not swapped: the next loads would wait for the pointers.
+        self.state[..2 * n].copy_from_slice(&self.next[..2 * n]);
     }
 
     /// Forces of the elements at the end of the step.
@@ -250,13 +251,13 @@ impl<'a> Block<'a> {
     /// Adds what the forces of the elements do to the state.
     #[inline(always)]
     fn push<S: Simd>(&mut self, simd: S, n: usize) {
-        self.net.fill(Pack::ZERO);
+        self.net[..n].fill(Pack::ZERO);
         for (element, &nodes) in self.elements.iter().zip(&self.nodes) {
             spread(simd, nodes, &element.smooth, &mut self.net);
         }
         self.kernel.push_end(simd, n, &self.net, &mut self.next);
         if self.any_dry {
-            self.net.fill(Pack::ZERO);
+            self.net[..n].fill(Pack::ZERO);
             for (element, &nodes) in self.elements.iter().zip(&self.nodes) {
                 spread(simd, nodes, &element.dry_force, &mut self.net);
             }
@@ -266,8 +267,8 @@ impl<'a> Block<'a> {
 
     /// Forces on the degrees of freedom at a sample, those of the elements included.
     #[inline(always)]
-    pub(super) fn load<S: Simd>(&mut self, simd: S, carried: &mut [Pack]) {
-        self.net.copy_from_slice(&self.after);
+    pub(super) fn load<S: Simd>(&mut self, simd: S, n: usize, carried: &mut [Pack]) {
+        self.net[..n].copy_from_slice(&self.after[..n]);
         for (i, element) in self.elements.iter().enumerate() {
             carried[i] = add(simd, &element.smooth, &element.dry_end);
             spread(simd, self.nodes[i], &carried[i], &mut self.net);

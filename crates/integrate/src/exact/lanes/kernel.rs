@@ -8,7 +8,6 @@ use crate::exact::propagator::ExactPropagator;
 
 /// The matrices of eight propagators, row-major.
 pub(super) struct LaneKernel {
-    pub(super) dof_count: usize,
     phi: Vec<Pack>,
     gamma0: Vec<Pack>,
     gamma1: Vec<Pack>,
@@ -27,7 +26,6 @@ impl LaneKernel {
                 .collect()
         };
         LaneKernel {
-            dof_count: propagators[0].dof_count,
             phi: pack(&|p| p.phi.clone()),
             gamma0: pack(&|p| p.gamma0.clone()),
             gamma1: pack(&|p| p.gamma1.clone()),
@@ -79,16 +77,18 @@ impl LaneKernel {
         push(simd, n, &self.held, force, next);
     }
 
-    /// Acceleration `M⁻¹ (f − C ẋ − K x)`, m/s².
+    /// Acceleration `M⁻¹ (f − C ẋ − K x)`, m/s²; `n` as in [`LaneKernel::step`].
     #[inline(always)]
     pub(super) fn acceleration<S: Simd>(
         &self,
         simd: S,
+        n: usize,
         [displacement, velocity, force]: [&[Pack]; 3],
         acceleration: &mut [Pack],
     ) {
-        let n = self.dof_count;
-        acceleration[..n].fill(Pack::ZERO);
+        let (displacement, velocity) = (&displacement[..n], &velocity[..n]);
+        let (force, acceleration) = (&force[..n], &mut acceleration[..n]);
+        acceleration.fill(Pack::ZERO);
         for j in 0..n {
             let mut net = force[j];
             for k in 0..n {

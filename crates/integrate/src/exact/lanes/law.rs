@@ -6,7 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::solve::{self, LawLanes};
 use super::{LANES, Mask, Pack};
-use crate::exact::law::{ForceLaw, MemberMotion};
+use crate::exact::law::{Followed, ForceLaw, MemberMotion};
 
 /// One law with the parameters of eight sets. Made by [`gather`], or lane by lane for laws that
 /// do not offer [`ForceLaw::lanes`].
@@ -83,8 +83,15 @@ impl<L: ForceLaw, F: Fn([f64; K]) -> L, const K: usize> LawLanes for Gathered<F,
     }
 
     #[inline(always)]
-    fn follow(&self, lane: usize, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
-        self.law(lane).follow(memory, from, to)
+    fn follow(
+        &self,
+        lane: usize,
+        memory: f64,
+        left: f64,
+        from: MemberMotion,
+        to: MemberMotion,
+    ) -> Followed {
+        self.law(lane).follow_step(memory, left, from, to)
     }
 
     #[inline(always)]
@@ -141,8 +148,21 @@ impl LawLanes for OneByOne<'_> {
     }
 
     #[inline(always)]
-    fn follow(&self, lane: usize, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
-        self.0[lane].follow(memory, from, to)
+    fn follow(
+        &self,
+        lane: usize,
+        memory: f64,
+        _: f64,
+        from: MemberMotion,
+        to: MemberMotion,
+    ) -> Followed {
+        // Laws of several types: some would not stay where they have arrived.
+        let (force, memory) = self.0[lane].follow(memory, from, to);
+        Followed {
+            force,
+            memory,
+            left: 0.0,
+        }
     }
 
     #[inline(always)]
