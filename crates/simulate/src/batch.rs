@@ -1,5 +1,6 @@
 //! Many simulations at once: those of one structure in the lanes of the vector registers.
 
+use rayon::prelude::*;
 use simgap_integrate::exact::Excitation;
 use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSet, LaneSnapshot, Pack};
 
@@ -32,26 +33,33 @@ pub fn predict_all(jobs: &[Job<'_>]) -> Vec<Prediction> {
         .iter()
         .map(|job| workshop.prepare(job.simulator, job.run, job.initial))
         .collect();
-    let mut raw: Vec<Option<Vec<Vec<f64>>>> = jobs.iter().map(|_| None).collect();
-    for group in groups(jobs, &prepared) {
-        if let [alone] = group[..] {
-            if let Ok(ready) = &prepared[alone] {
-                raw[alone] = Some(jobs[alone].simulator.predict_raw(jobs[alone].run, ready));
+    let groups = groups(jobs, &prepared);
+    let packs: Vec<&[usize]> = groups
+        .iter()
+        .flat_map(|group| group.chunks(LANES))
+        .collect();
+    let marched = packs
+        .par_iter()
+        .map(|pack| match (pack, &prepared[pack[0]]) {
+            ([alone], Ok(ready)) => {
+                vec![jobs[*alone].simulator.predict_raw(jobs[*alone].run, ready)]
             }
-            continue;
-        }
-        for (index, signals) in group.iter().zip(march(jobs, &prepared, &group)) {
-            raw[*index] = Some(signals);
+            _ => march(jobs, &prepared, pack),
+        });
+    let mut raw: Vec<Vec<Vec<f64>>> = vec![vec![]; jobs.len()];
+    for (pack, signals) in packs.iter().zip(marched.collect::<Vec<_>>()) {
+        for (index, signals) in pack.iter().zip(signals) {
+            raw[*index] = signals;
         }
     }
-    let finish = |((job, prepared), raw): ((&Job<'_>, Result<Prepared, _>), Option<_>)| {
+    let finish = |((job, prepared), raw): ((&Job<'_>, Result<Prepared, _>), _)| {
         prepared.map(|ready| {
             let keep = |map: &dyn simgap_effects::SignalMap| !(job.smooth && map.is_stepped());
-            job.simulator
-                .deliver(job.run, &ready, raw.unwrap_or_default(), keep)
+            job.simulator.deliver(job.run, &ready, raw, keep)
         })
     };
-    jobs.iter().zip(prepared).zip(raw).map(finish).collect()
+    let all = jobs.par_iter().zip(prepared).zip(raw);
+    all.map(finish).collect()
 }
 
 fn lane_set<'a>(job: &Job<'a>, ready: &'a Prepared) -> LaneSet<'a> {
@@ -110,28 +118,36 @@ fn groups(jobs: &[Job<'_>], prepared: &[Result<Prepared, SimulateError>]) -> Vec
     groups
 }
 
-/// Marches a group; signals before the maps of the outputs, job by job.
+/// Marches the jobs of a pack; signals before the maps of the outputs, job by job.
 fn march(
     jobs: &[Job<'_>],
     prepared: &[Result<Prepared, SimulateError>],
-    group: &[usize],
+    pack: &[usize],
 ) -> Vec<Vec<Vec<f64>>> {
-    let ready: Vec<&Prepared> = group
+    let ready: Vec<&Prepared> = pack
         .iter()
         .filter_map(|&i| prepared[i].as_ref().ok())
         .collect();
-    let members: Vec<&Job<'_>> = group.iter().map(|&i| &jobs[i]).collect();
-    let sets = members.iter().zip(&ready).map(|(job, r)| lane_set(job, r));
-    let plans = &members[0].simulator.outputs;
+    let jobs: Vec<&Job<'_>> = pack.iter().map(|&i| &jobs[i]).collect();
+    let sets = jobs.iter().zip(&ready).map(|(job, r)| lane_set(job, r));
+    let plans = &jobs[0].simulator.outputs;
+    let lane = |l: usize| l.min(jobs.len() - 1);
+    let plan = |l: usize, k: usize| &jobs[lane(l)].simulator.outputs[k];
     let mut recorder = Recorder {
         plans,
         accelerated: plans.iter().any(OutputPlan::needs_acceleration),
-        members: group
-            .chunks(LANES)
-            .zip(ready.chunks(LANES))
-            .map(|(group, ready)| Member::new(jobs, group, ready, plans.len()))
+        coefficients: (0..plans.len())
+            .map(|k| {
+                [
+                    Pack::of(|l| plan(l, k).stiffness),
+                    Pack::of(|l| plan(l, k).damping),
+                ]
+            })
             .collect(),
-        signals: members
+        ready: std::array::from_fn(|l| ready[lane(l)]),
+        buffer: vec![[Pack::ZERO; CHUNK]; plans.len()],
+        seen: 0,
+        signals: jobs
             .iter()
             .map(|job| vec![vec![0.0; job.run.len]; plans.len()])
             .collect(),
@@ -145,16 +161,10 @@ fn march(
 /// Samples that are kept in lanes before they go to the signals.
 const CHUNK: usize = 64;
 
-/// Writes down the outputs of a group.
+/// Writes down the outputs of up to eight jobs.
 struct Recorder<'a> {
     plans: &'a [OutputPlan],
     accelerated: bool,
-    members: Vec<Member<'a>>,
-    signals: Vec<Vec<Vec<f64>>>,
-}
-
-/// Eight jobs of a group.
-struct Member<'a> {
     /// Stiffness and damping of the members each output sees.
     coefficients: Vec<[Pack; 2]>,
     ready: [&'a Prepared; LANES],
@@ -162,31 +172,7 @@ struct Member<'a> {
     buffer: Vec<[Pack; CHUNK]>,
     /// Samples seen.
     seen: usize,
-}
-
-impl<'a> Member<'a> {
-    fn new(
-        jobs: &[Job<'_>],
-        group: &[usize],
-        ready: &[&'a Prepared],
-        outputs: usize,
-    ) -> Member<'a> {
-        let lane = |l: usize| l.min(group.len() - 1);
-        let plan = |l: usize, k: usize| &jobs[group[lane(l)]].simulator.outputs[k];
-        Member {
-            coefficients: (0..outputs)
-                .map(|k| {
-                    [
-                        Pack::of(|l| plan(l, k).stiffness),
-                        Pack::of(|l| plan(l, k).damping),
-                    ]
-                })
-                .collect(),
-            ready: std::array::from_fn(|l| ready[lane(l)]),
-            buffer: vec![[Pack::ZERO; CHUNK]; outputs],
-            seen: 0,
-        }
-    }
+    signals: Vec<Vec<Vec<f64>>>,
 }
 
 impl LaneObserver for Recorder<'_> {
@@ -196,36 +182,32 @@ impl LaneObserver for Recorder<'_> {
 
     #[inline(always)]
     fn observe(&mut self, at: &LaneSnapshot<'_>) {
-        let block = at.first_set / LANES;
-        let member = &mut self.members[block];
         let slot = at.sample % CHUNK;
+        let base = LaneBase {
+            sample: at.sample,
+            ready: &self.ready,
+        };
         for (k, plan) in self.plans.iter().enumerate() {
-            let base = LaneBase {
-                sample: at.sample,
-                ready: &member.ready,
-            };
-            member.buffer[k][slot] = plan.read_lanes(at, &base, &member.coefficients[k]);
+            self.buffer[k][slot] = plan.read_lanes(at, &base, &self.coefficients[k]);
         }
-        member.seen = at.sample + 1;
+        self.seen = at.sample + 1;
         if slot + 1 == CHUNK {
-            self.flush(block);
+            self.flush();
         }
     }
 }
 
 impl Recorder<'_> {
-    /// Moves the present chunk of eight jobs to their signals.
-    fn flush(&mut self, block: usize) {
-        let member = &self.members[block];
-        let Some(last) = member.seen.checked_sub(1) else {
+    /// Moves the present chunk to the signals.
+    fn flush(&mut self) {
+        let Some(last) = self.seen.checked_sub(1) else {
             return;
         };
         let first = last / CHUNK * CHUNK;
-        let jobs = self.signals.iter_mut().skip(block * LANES).take(LANES);
-        for (lane, signals) in jobs.enumerate() {
-            for (signal, buffer) in signals.iter_mut().zip(&member.buffer) {
+        for (lane, signals) in self.signals.iter_mut().enumerate() {
+            for (signal, buffer) in signals.iter_mut().zip(&self.buffer) {
                 // A job whose run is over keeps what it has.
-                let end = signal.len().min(member.seen);
+                let end = signal.len().min(self.seen);
                 let values = signal.get_mut(first..end).unwrap_or_default();
                 for (value, pack) in values.iter_mut().zip(buffer) {
                     *value = pack.0[lane];
@@ -235,10 +217,8 @@ impl Recorder<'_> {
     }
 
     fn finish(mut self) -> Vec<Vec<Vec<f64>>> {
-        for block in 0..self.members.len() {
-            if !self.members[block].seen.is_multiple_of(CHUNK) {
-                self.flush(block);
-            }
+        if !self.seen.is_multiple_of(CHUNK) {
+            self.flush();
         }
         self.signals
     }

@@ -1,6 +1,6 @@
 //! What several simulations share: propagators of the same matrices, drives of the same run.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use faer::Mat;
 use simgap_integrate::exact::ExactPropagator;
@@ -11,8 +11,8 @@ use crate::{Run, SimulateError, Simulator};
 
 /// A simulation ready to be marched.
 pub(crate) struct Prepared {
-    pub(crate) propagator: Rc<ExactPropagator>,
-    pub(crate) drive: Rc<Drive>,
+    pub(crate) propagator: Arc<ExactPropagator>,
+    pub(crate) drive: Arc<Drive>,
     pub(crate) displacement: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
 }
@@ -20,8 +20,8 @@ pub(crate) struct Prepared {
 /// What has been prepared already.
 #[derive(Default)]
 pub(crate) struct Workshop<'a> {
-    propagators: Vec<(StructuralMatrices, f64, Rc<ExactPropagator>)>,
-    drives: Vec<(DriveKey<'a>, Rc<Drive>)>,
+    propagators: Vec<(StructuralMatrices, f64, Arc<ExactPropagator>)>,
+    drives: Vec<(DriveKey<'a>, Arc<Drive>)>,
 }
 
 impl<'a> Workshop<'a> {
@@ -29,7 +29,7 @@ impl<'a> Workshop<'a> {
         &mut self,
         matrices: &StructuralMatrices,
         step: f64,
-    ) -> Result<Rc<ExactPropagator>, SimulateError> {
+    ) -> Result<Arc<ExactPropagator>, SimulateError> {
         let known = self.propagators.iter().find(|(known, of_step, _)| {
             *of_step == step
                 && known.mass_matrix == matrices.mass_matrix
@@ -37,10 +37,10 @@ impl<'a> Workshop<'a> {
                 && known.stiffness_matrix == matrices.stiffness_matrix
         });
         if let Some((_, _, propagator)) = known {
-            return Ok(Rc::clone(propagator));
+            return Ok(Arc::clone(propagator));
         }
-        let propagator = Rc::new(ExactPropagator::new(matrices, step)?);
-        let entry = (matrices.clone(), step, Rc::clone(&propagator));
+        let propagator = Arc::new(ExactPropagator::new(matrices, step)?);
+        let entry = (matrices.clone(), step, Arc::clone(&propagator));
         self.propagators.push(entry);
         Ok(propagator)
     }
@@ -49,13 +49,13 @@ impl<'a> Workshop<'a> {
         &mut self,
         simulator: &'a Simulator,
         run: &'a Run,
-    ) -> Result<Rc<Drive>, SimulateError> {
+    ) -> Result<Arc<Drive>, SimulateError> {
         let key = simulator.drive_key(run)?;
         if let Some((_, drive)) = self.drives.iter().find(|(known, _)| *known == key) {
-            return Ok(Rc::clone(drive));
+            return Ok(Arc::clone(drive));
         }
-        let drive = Rc::new(simulator.drive(run)?);
-        self.drives.push((key, Rc::clone(&drive)));
+        let drive = Arc::new(simulator.drive(run)?);
+        self.drives.push((key, Arc::clone(&drive)));
         Ok(drive)
     }
 

@@ -122,9 +122,6 @@ pub struct Batch<'a> {
     sample_count: usize,
 }
 
-/// Packs that are marched side by side: what one waits for, another fills.
-const BLOCKS: usize = 4;
-
 impl<'a> Batch<'a> {
     /// Takes sets that are all alike ([`LaneSet::is_alike`]); `None` if they are not.
     #[must_use]
@@ -136,14 +133,9 @@ impl<'a> Batch<'a> {
 
     /// Marches every set from its initial state through its excitation.
     pub fn march(&self, observer: &mut impl LaneObserver) {
-        let arch = Arch::new();
-        for (group, sets) in self.sets.chunks(BLOCKS * LANES).enumerate() {
-            let mut lanes: Vec<Lanes<'_>> = sets
-                .chunks(LANES)
-                .enumerate()
-                .map(|(i, sets)| Lanes::new(arch, sets, group * BLOCKS * LANES + i * LANES))
-                .collect();
-            let (lanes, count) = (&mut lanes, self.sample_count);
+        let (arch, count) = (Arch::new(), self.sample_count);
+        for (i, sets) in self.sets.chunks(LANES).enumerate() {
+            let lanes = &mut Lanes::new(arch, sets, i * LANES);
             match sets[0].propagator.dof_count {
                 1 => arch.dispatch(March::<1, _>(lanes, count, observer)),
                 2 => arch.dispatch(March::<2, _>(lanes, count, observer)),
@@ -290,7 +282,7 @@ fn between<S: Simd>(simd: S, from: &[Pack], to: &[Pack], share: f64, out: &mut [
 }
 
 /// [`march`] in the best instructions there are; a closure would not be inlined into them.
-struct March<'a, 'b, const N: usize, O>(&'a mut [Lanes<'b>], usize, &'a mut O);
+struct March<'a, 'b, const N: usize, O>(&'a mut Lanes<'b>, usize, &'a mut O);
 
 impl<const N: usize, O: LaneObserver> WithSimd for March<'_, '_, N, O> {
     type Output = ();
@@ -305,35 +297,26 @@ impl<const N: usize, O: LaneObserver> WithSimd for March<'_, '_, N, O> {
 #[inline(always)]
 fn march<const N: usize, S: Simd>(
     simd: S,
-    all: &mut [Lanes<'_>],
+    lanes: &mut Lanes<'_>,
     sample_count: usize,
     observer: &mut impl LaneObserver,
 ) {
-    let substeps = all
-        .first()
-        .map_or(1, |lanes| lanes.excitations[0].substeps.max(1));
+    let substeps = lanes.excitations[0].substeps.max(1);
     let share = 1.0 / substeps as f64;
-    let dofs = all.first().map_or(0, |lanes| lanes.force[0].len());
-    let n = if N == 0 { dofs } else { N };
+    let n = if N == 0 { lanes.force[0].len() } else { N };
     for sample in 0..sample_count {
-        for lanes in all.iter_mut() {
-            lanes.load(n, sample);
-        }
+        lanes.load(n, sample);
         for sub in 0..if sample == 0 { 0 } else { substeps } {
-            let steps = (sample - 1) * substeps + sub + 1;
-            for lanes in all.iter_mut() {
-                if substeps == 1 {
-                    lanes.take_whole(n);
-                } else {
-                    let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
-                    lanes.interpolate(simd, n, start, end);
-                }
-                lanes.block.step(simd, n, steps);
+            if substeps == 1 {
+                lanes.take_whole(n);
+            } else {
+                let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
+                lanes.interpolate(simd, n, start, end);
             }
+            let steps = (sample - 1) * substeps + sub + 1;
+            lanes.block.step(simd, n, steps);
         }
-        for lanes in all.iter_mut() {
-            observe(simd, n, lanes, sample, observer);
-        }
+        observe(simd, n, lanes, sample, observer);
     }
 }
 
