@@ -53,7 +53,7 @@ fn moved(law: &dyn ForceLaw, displacement: f64) -> f64 {
         displacement,
         ..from
     };
-    law.follow(law.first_memory(), from, to).0
+    law.follow(law.first_memory(), from, to).force
 }
 
 /// The same without the effect.

@@ -34,9 +34,9 @@ fn at(displacement: f64) -> MemberMotion {
 fn walk(law: &dyn ForceLaw, path: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let (mut memory, mut from) = (law.first_memory(), at(0.0));
     let step = |to: f64| {
-        let (force, left) = law.follow(memory, from, at(to));
-        (memory, from) = (left, at(to));
-        force
+        let end = law.follow(memory, from, at(to));
+        (memory, from) = (end.memory, at(to));
+        end.force
     };
     path.into_iter().map(step).collect()
 }

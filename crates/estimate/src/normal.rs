@@ -54,33 +54,31 @@ pub(crate) fn inner_products(
     left: &[&Signals],
     right: &[&Signals],
     weights: &[f64],
-    is_wanted: impl Fn(usize, usize) -> bool + Sync,
+    is_wanted: impl Fn(usize, usize) -> bool,
 ) -> Mat<f64> {
-    let lengths = || left.iter().flat_map(|signals| signals.iter().map(Vec::len));
-    let len = lengths().max().unwrap_or(0);
-    let cells = || {
-        let all = (0..left.len()).flat_map(|i| (0..right.len()).map(move |j| (i, j)));
-        all.filter(|&(i, j)| is_wanted(i, j))
-    };
+    let lengths = left.iter().flat_map(|signals| signals.iter().map(Vec::len));
+    let len = lengths.max().unwrap_or(0);
+    let all = (0..left.len()).flat_map(|i| (0..right.len()).map(move |j| (i, j)));
+    let cells: Vec<(usize, usize)> = all.filter(|&(i, j)| is_wanted(i, j)).collect();
     let part = |signal: &Vec<f64>, block: usize| -> std::ops::Range<usize> {
         let start = (block * BLOCK).min(signal.len());
         start..(start + BLOCK).min(signal.len())
     };
     let of_block = |block: usize| -> Vec<f64> {
-        let product = |(i, j): (usize, usize)| {
+        let product = |&(i, j): &(usize, usize)| {
             let channels = left[i].iter().zip(right[j]).zip(weights);
             let product = |((x, y), w): ((&Vec<f64>, &Vec<f64>), &f64)| {
                 w * dot(&x[part(x, block)], &y[part(y, block)])
             };
             channels.map(product).sum::<f64>()
         };
-        cells().map(product).collect()
+        cells.iter().map(product).collect()
     };
     let blocks = (0..len.div_ceil(BLOCK)).into_par_iter().map(of_block);
     let mut products = Mat::zeros(left.len(), right.len());
     // In the order of the blocks, whatever thread they came from.
     for block in blocks.collect::<Vec<_>>() {
-        for ((i, j), value) in cells().zip(block) {
+        for (&(i, j), value) in cells.iter().zip(block) {
             products[(i, j)] += value;
         }
     }

@@ -61,10 +61,10 @@ impl ForceLaw for Slip {
         0.1 * self.limit
     }
 
-    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+    fn follow_step(&self, memory: f64, _: f64, from: MemberMotion, to: MemberMotion) -> Followed {
         let force = memory + self.stiffness * (to.displacement - from.displacement);
         let force = force.max(-self.limit).min(self.limit);
-        (force + 0.01 * self.limit * to.time_s, force)
+        Followed::arrived(force + 0.01 * self.limit * to.time_s, force)
     }
 }
 
@@ -84,14 +84,6 @@ impl ForceLaw for Strides {
 
     fn remembers(&self) -> bool {
         true
-    }
-
-    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
-        let mut at = self.follow_step(memory, 1.0, from, to);
-        while at.left > 0.0 {
-            at = self.follow_step(at.memory, at.left, from, to);
-        }
-        (at.force, at.memory)
     }
 
     fn follow_step(

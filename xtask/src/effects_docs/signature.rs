@@ -109,9 +109,9 @@ fn along(law: &dyn ForceLaw, motion: &[MemberMotion]) -> Vec<f64> {
     for pass in 0..2 {
         for &here in motion {
             let smooth = if law.remembers() {
-                let (force, left) = law.follow(memory, before, here);
-                memory = left;
-                force
+                let moved = law.follow(memory, before, here);
+                memory = moved.memory;
+                moved.force
             } else {
                 law.force(here)
             };

@@ -114,14 +114,6 @@ impl ForceLaw for Law {
         self.start
     }
 
-    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
-        let mut at = self.follow_step(memory, 1.0, from, to);
-        while at.left > 0.0 {
-            at = self.follow_step(at.memory, at.left, from, to);
-        }
-        (at.force, at.memory)
-    }
-
     /// (2) along the move; the memory is z / u_y.
     #[inline(always)]
     fn follow_step(

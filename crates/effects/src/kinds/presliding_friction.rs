@@ -1,6 +1,6 @@
 //! Friction that gives like a spring before it slides (Dahl).
 
-use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
+use simgap_integrate::exact::{Followed, ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
@@ -47,14 +47,14 @@ impl ForceLaw for Law {
     /// (2); the memory is the force.
     // Without exits, so that it becomes vector instructions.
     #[inline(always)]
-    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
+    fn follow_step(&self, memory: f64, _: f64, from: MemberMotion, to: MemberMotion) -> Followed {
         let moved = to.displacement - from.displacement;
         let level = self.friction.copysign(moved);
         let decay = elementary::exp(-moved.abs() / self.displacement);
         let pulled = level + (memory - level) * decay;
         let held = if moved == 0.0 { memory } else { pulled };
         let force = if self.friction > 0.0 { held } else { 0.0 };
-        (force, force)
+        Followed::arrived(force, force)
     }
 }
 

@@ -26,6 +26,17 @@ pub struct Followed {
     pub left: f64,
 }
 
+impl Followed {
+    /// At the end of the move.
+    pub fn arrived(force: f64, memory: f64) -> Self {
+        Self {
+            force,
+            memory,
+            left: 0.0,
+        }
+    }
+}
+
 /// A force carried between two nodes, positive when it resists a positive displacement of a from
 /// b, as a spring's `k d` does: it pushes a with −F and b with +F.
 ///
@@ -47,17 +58,10 @@ pub trait ForceLaw: Any + Send + Sync {
         0.0
     }
 
-    /// For a law that [`ForceLaw::remembers`]: the single-valued part at the end of a move and the
-    /// memory it leaves, from the memory at the start of the move. The way between is taken to be
-    /// monotone.
-    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> (f64, f64) {
-        let _ = from;
-        (self.force(to), memory)
-    }
-
-    /// One step of [`ForceLaw::follow`] for a law that follows a long move in several: from the memory
-    /// where the share `left` of the move is ahead, one at its start. A law with nothing left stays.
-    /// Without exits or calls it becomes vector instructions where sets are marched side by side.
+    /// For a law that [`ForceLaw::remembers`]: one step along a move, from the memory where the share
+    /// `left` of the move is ahead, one at its start. The way between is taken to be monotone. A law
+    /// that follows a long move in several steps stays where nothing is left; without exits or calls
+    /// it becomes vector instructions where sets are marched side by side.
     fn follow_step(
         &self,
         memory: f64,
@@ -65,13 +69,17 @@ pub trait ForceLaw: Any + Send + Sync {
         from: MemberMotion,
         to: MemberMotion,
     ) -> Followed {
-        let _ = left;
-        let (force, memory) = self.follow(memory, from, to);
-        Followed {
-            force,
-            memory,
-            left: 0.0,
+        let _ = (left, from);
+        Followed::arrived(self.force(to), memory)
+    }
+
+    /// The whole move by [`ForceLaw::follow_step`]; not to be overridden.
+    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> Followed {
+        let mut at = self.follow_step(memory, 1.0, from, to);
+        while at.left > 0.0 {
+            at = self.follow_step(at.memory, at.left, from, to);
         }
+        at
     }
 
     /// Largest dry force at the sliding speed |v| (m/s), N, not negative; `None` for a law

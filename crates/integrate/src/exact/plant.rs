@@ -166,10 +166,12 @@ impl<'a> Plant<'a> {
                 time_s,
             };
             self.from[i] = motion;
-            (self.smooth[i], self.memory[i]) = if self.remembers[i] {
-                element.law.follow(self.memory[i], motion, motion)
+            self.smooth[i] = if self.remembers[i] {
+                let first = element.law.follow(self.memory[i], motion, motion);
+                self.memory[i] = first.memory;
+                first.force
             } else {
-                (element.law.force(motion), self.memory[i])
+                element.law.force(motion)
             };
             let level = element.law.dry_level(motion.velocity.abs()).unwrap_or(0.0);
             // At rest the dry force balances what it can of the excitation across it.
@@ -237,7 +239,7 @@ impl<'a> Plant<'a> {
         self.memory[i] = self.elements[i]
             .law
             .follow(self.memory[i], self.from[i], to)
-            .1;
+            .memory;
         self.from[i] = to;
     }
 
@@ -274,7 +276,7 @@ impl<'a> Plant<'a> {
         };
         self.smooth[i] = if self.remembers[i] {
             let (memory, from) = (self.memory[i], self.from[i]);
-            smooth_force(old_smooth, |s| law.follow(memory, from, motion(s)).0)
+            smooth_force(old_smooth, |s| law.follow(memory, from, motion(s)).force)
         } else {
             smooth_force(old_smooth, |s| law.force(motion(s)))
         };

@@ -157,12 +157,7 @@ impl LawLanes for OneByOne<'_> {
         to: MemberMotion,
     ) -> Followed {
         // Laws of several types: some would not stay where they have arrived.
-        let (force, memory) = self.0[lane].follow(memory, from, to);
-        Followed {
-            force,
-            memory,
-            left: 0.0,
-        }
+        self.0[lane].follow(memory, from, to)
     }
 
     #[inline(always)]
