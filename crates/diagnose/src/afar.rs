@@ -2,11 +2,12 @@
 //!
 //! Where no single effect explains a gap, it may be that the right one was fitted from the wrong side of
 //! a ridge, or from a size at which it does something else. Effects of the machine are then simulated at
-//! many values, spread over two decades about their starting values, and fitted from the best of them.
+//! many values, spread over two decades about their starting values, and fitted from the best of them; a clock that
+//! leaves no line is swept over its range.
 
 use rayon::prelude::*;
 use simgap_effects::{Effect, SiteScale};
-use simgap_estimate::{Base, Candidate, EstimateError, Score, Start, score_outright};
+use simgap_estimate::{Base, Candidate, EstimateError, Score, Start, score_outright, score_shapes};
 
 use crate::hypothesis::{Hypothesis, add, name, sort};
 use crate::search::Search;
@@ -17,9 +18,10 @@ const POINTS: usize = 48;
 const POINTS_OF_ONE: usize = 16;
 /// Values lie within this factor of the starting values.
 const SPREAD: f64 = 10.0;
-/// Sets fitted of effects with a shape and of others, and from how many values of each.
+/// Sets fitted of effects with a shape, of those with one value and of swept ones, and from how many values of each.
 const FITTED_OF_SHAPE: usize = 12;
 const FITTED_OF_ONE: usize = 6;
+const FITTED_OF_SWEPT: usize = 3;
 const STARTS_OF_EACH: usize = 2;
 /// Sets of these that are finished, and in how many steps: from afar it takes more.
 const FINISHED: usize = 3;
@@ -34,21 +36,22 @@ impl Search<'_> {
         base: &Hypothesis,
         linear: &Base<'_>,
     ) -> Result<Vec<Hypothesis>, EstimateError> {
-        let curved = self
-            .candidates
-            .par_iter()
-            .filter(|(c, _)| is_curved(c.effect));
-        let scored = curved
-            .map(|(candidate, scale)| {
-                let points = points(candidate, scale);
-                let mut best = score_outright(linear, candidate, &points).unwrap_or_default();
-                best.truncate(STARTS_OF_EACH);
-                best
-            })
-            .collect::<Vec<_>>();
-        let best = |shaped: bool, most: usize| {
+        let scored = self.candidates.par_iter().map(|(candidate, scale)| {
+            let scores = if candidate.effect.clock().is_some() {
+                score_shapes(linear, candidate, &candidate.effect.sweep(scale))
+            } else if candidate.effect.family().is_law() {
+                score_outright(linear, candidate, &points(candidate, scale))
+            } else {
+                Ok(vec![])
+            };
+            let mut best = scores.unwrap_or_default();
+            best.truncate(STARTS_OF_EACH);
+            best
+        });
+        let scored = scored.collect::<Vec<_>>();
+        let best = |of: Tried, most: usize| {
             let mut best: Vec<&Score> = scored.iter().flatten().collect();
-            best.retain(|score| has_shape(score.start.effect) == shaped);
+            best.retain(|score| tried(score.start.effect) == of);
             best.sort_by(|a, b| {
                 let by_name = || name(&a.start).cmp(&name(&b.start));
                 b.gain.total_cmp(&a.gain).then_with(by_name)
@@ -56,8 +59,9 @@ impl Search<'_> {
             best.truncate(most);
             best
         };
-        let mut best_of_all = best(true, FITTED_OF_SHAPE);
-        best_of_all.extend(best(false, FITTED_OF_ONE));
+        let mut best_of_all = best(Tried::Shape, FITTED_OF_SHAPE);
+        best_of_all.extend(best(Tried::Size, FITTED_OF_ONE));
+        best_of_all.extend(best(Tried::Clock, FITTED_OF_SWEPT));
         let starts: Vec<Start> = best_of_all
             .into_iter()
             .map(|score| add(&base.fit.estimate, score.start.clone()))
@@ -73,12 +77,26 @@ impl Search<'_> {
     }
 }
 
-/// Whether an effect of the machine may answer to more than in proportion to its size.
-fn is_curved(effect: &dyn Effect) -> bool {
-    effect.family().is_law() && effect.clock().is_none()
+/// What is tried of an effect.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Tried {
+    /// Values that shape it, and its size.
+    Shape,
+    /// Its size.
+    Size,
+    /// The frequencies of its sweep.
+    Clock,
 }
 
-/// Whether it has, besides its size, values that shape it.
+fn tried(effect: &dyn Effect) -> Tried {
+    match effect {
+        _ if effect.clock().is_some() => Tried::Clock,
+        _ if has_shape(effect) => Tried::Shape,
+        _ => Tried::Size,
+    }
+}
+
+/// Whether an effect has, besides its size, values that shape it.
 fn has_shape(effect: &dyn Effect) -> bool {
     let shared = effect.parameters().iter().filter(|p| !p.per_record);
     shared.clone().count() > 1

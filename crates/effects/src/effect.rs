@@ -279,6 +279,12 @@ pub trait Effect: Sync + Send {
     /// but visible instance of the effect at this site.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>>;
 
+    /// Starting values over the whole range of a clock that may leave no line to start from. They are tried where no
+    /// single effect leaves only noise.
+    fn sweep(&self, _: &SiteScale) -> Vec<Vec<f64>> {
+        vec![]
+    }
+
     /// Kinds that are special cases of this one, whose parameters come first among its own: at one
     /// place only one of them makes sense.
     fn contains(&self) -> &'static [&'static str] {

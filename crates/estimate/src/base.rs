@@ -15,7 +15,7 @@ use crate::reach::Reach;
 use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 
 /// Columns that keep less than this of their energy past the nuisance are explained by it.
-const HIDDEN: f64 = 1e-6;
+const HIDDEN: f64 = 1e-9;
 
 /// A fit, linearised once for the score of many effects.
 pub struct Base<'a> {

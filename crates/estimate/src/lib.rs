@@ -83,6 +83,6 @@ pub use initial::{fit_initial_states, fit_initial_states_from, simulator_at};
 pub use layout::{Candidate, Start};
 pub use outright::score_outright;
 pub use problem::{Problem, Weights};
-pub use score::{Score, score};
+pub use score::{Score, score, score_shapes};
 
 pub use simgap_simulate::SimulateError as EstimateError;

@@ -44,7 +44,18 @@ pub fn score(
     candidate: &Candidate,
     scale: &SiteScale,
 ) -> Result<Vec<Score>, EstimateError> {
-    let shapes = candidate.effect.starts(scale);
+    score_shapes(base, candidate, &candidate.effect.starts(scale))
+}
+
+/// [`score`](score()) from given shapes.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn score_shapes(
+    base: &Base<'_>,
+    candidate: &Candidate,
+    shapes: &[Vec<f64>],
+) -> Result<Vec<Score>, EstimateError> {
     let mut scores = Vec::new();
     for few in shapes.chunks(SHAPES_TOGETHER) {
         let wanted: Vec<Vec<Trial>> = few.iter().map(|shape| trials(candidate, shape)).collect();

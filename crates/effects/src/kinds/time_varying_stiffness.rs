@@ -23,6 +23,14 @@ struct Law {
     phase: f64,
 }
 
+/// Half periods in a record that a sweep goes up to.
+const SWEPT: usize = 256;
+
+/// A tenth of the spring, at a frequency.
+fn start(freq: f64, scale: &SiteScale) -> Vec<f64> {
+    vec![0.1 * scale.stiffness_n_per_m, freq, 0.0]
+}
+
 impl ForceLaw for Law {
     lanes!(amplitude, omega, phase);
 
@@ -83,8 +91,19 @@ impl Effect for TimeVaryingStiffness {
                 }
             }
         }
-        let start = |freq| vec![0.1 * scale.stiffness_n_per_m, freq, 0.0];
-        found.into_iter().map(start).collect()
+        found.into_iter().map(|freq| start(freq, scale)).collect()
+    }
+
+    /// Beside a motion of many frequencies it leaves none of its own. Half a period more in the record for each, up to
+    /// four times the frequency of the motion: twice that of a mode it excites.
+    fn sweep(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let step = 0.5 / scale.duration_s;
+        let most = (4.0 * scale.motion_hz[0]).min(0.5 / scale.time_step_s);
+        (2..=SWEPT)
+            .map(|half_periods| half_periods as f64 * step)
+            .take_while(|freq| *freq < most)
+            .map(|freq| start(freq, scale))
+            .collect()
     }
 
     fn clock(&self) -> Option<Clock> {
