@@ -26,7 +26,9 @@ const MOST_RIVALS: usize = 2;
 const SHOWN: usize = 12;
 
 pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
-    let effects: Vec<NamedEffect> = (0..answer.judged.len()).map(|i| named(answer, i)).collect();
+    let effects: Vec<NamedEffect> = (0..answer.judged.len())
+        .map(|i| named(answer, gap, i))
+        .collect();
     let mut status = if effects.is_empty() {
         Status::None
     } else if answer.names_more_than_parameters() {
@@ -47,12 +49,12 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
 }
 
 /// The i-th effect of the answer.
-fn named(answer: &Answer, i: usize) -> NamedEffect {
+fn named(answer: &Answer, gap: &Gap, i: usize) -> NamedEffect {
     let judged = &answer.judged[i];
     let effect = judged.placed.effect;
     let intervals = answer.estimate.intervals.get(i).into_iter().flatten();
     let parameters = effect.parameters().iter().zip(intervals);
-    let doubts = doubts(answer, i);
+    let doubts = doubts(answer, gap, i);
     let mut evidence = sentences(judged);
     if !doubts.is_empty() {
         evidence.push(format!(

@@ -13,7 +13,7 @@
 //!
 //! 0.830 is what the worst 3 % leave of the variance of normal noise, N_c its variance.
 
-use simgap_effects::{Action, Placed};
+use simgap_effects::Placed;
 use simgap_estimate::Problem;
 use simgap_model::OutputKind;
 
@@ -77,13 +77,8 @@ fn is_of_jumps(discrepancy: &[Vec<Vec<f64>>], jumping: &[bool], noise: &[f64]) -
     all > EXCESS && between < SPREAD * all
 }
 
-/// Whether one of the effects is a law with a dry part: its force jumps when the motion turns.
 fn has_friction(effects: &[Placed]) -> bool {
-    let is_dry = |placed: &Placed| match placed.action() {
-        Action::Force(law) => law.dry_level(0.0).is_some(),
-        _ => false,
-    };
-    effects.iter().any(is_dry)
+    effects.iter().any(|placed| placed.action().is_dry())
 }
 
 /// Whether what a set with dry friction leaves is of jumps, and what it brings beyond a smaller set is there.

@@ -3,8 +3,10 @@
 use simgap_effects::{Action, Family, Parameter, Placed, Sampled};
 use simgap_estimate::Interval;
 
+use crate::Gap;
 use crate::evidence::is_nominal;
 use crate::pipeline::Answer;
+use crate::unexplained::misses_little;
 
 /// A value this near to the end of its range, relative to it, is at the end.
 const AT_THE_END: f64 = 1e-3;
@@ -17,7 +19,7 @@ const SAME_FACTOR: f64 = 0.25;
 const MISFITS: f64 = 0.3;
 
 /// Why the i-th named effect may be a stand-in; empty for one that shows no sign of it.
-pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
+pub(crate) fn doubts(answer: &Answer, gap: &Gap, i: usize) -> Vec<String> {
     let judged = &answer.judged[i];
     let placed = &judged.placed;
     if is_nominal(placed) {
@@ -34,6 +36,11 @@ pub(crate) fn doubts(answer: &Answer, i: usize) -> Vec<String> {
     if matches!(placed.action(), Action::Sampling(_)) {
         // A converter, a lost sample: values at the end of a range are what they look like.
         return doubts;
+    }
+    if misses_little(answer, gap) {
+        doubts.push(
+            "it leaves more than noise of all records, where the law itself would not".into(),
+        );
     }
     let fitted = answer.estimate.estimate.effects.get(i);
     let values = fitted.map_or(&placed.values, |fitted| &fitted.values);

@@ -239,6 +239,12 @@ impl Action {
         matches!(self, Action::Mode { .. })
     }
 
+    /// Whether it is a force law with a dry part: one that can hold a member still, and jumps when the motion turns.
+    #[must_use]
+    pub fn is_dry(&self) -> bool {
+        matches!(self, Action::Force(law) if law.dry_level(0.0).is_some())
+    }
+
     /// Whether it moves a signal in steps, so that it has no derivative to go by.
     #[must_use]
     pub fn is_stepped(&self) -> bool {

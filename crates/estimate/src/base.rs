@@ -7,7 +7,7 @@ use faer::{Mat, Side};
 use simgap_effects::Placed;
 use simgap_simulate::{Job, predict_all};
 
-use crate::fit::{Merit, fit_with, state_scale};
+use crate::fit::{Known, Merit, fit_with, state_scale};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, Signals, linearise};
 use crate::normal::{inner, inner_products, normal_equations};
@@ -23,6 +23,7 @@ pub struct Base<'a> {
     pub(crate) fit: &'a Fit,
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
+    objective: f64,
     reach: Reach,
     pub(crate) weights: Vec<f64>,
     /// Of H; without where nothing may be adjusted.
@@ -54,7 +55,8 @@ pub fn linearise_at<'a>(
     let at = linearise(problem, &layout, &theta)?;
     let merit = Merit::new(problem, weights);
     let reach = Reach::of(problem, &fit.estimate.effects);
-    let channel_weights = merit.weights(&merit.variance(&at.discrepancy, &reach));
+    let (objective, variance) = merit.of(&layout, &theta, &at.discrepancy);
+    let channel_weights = merit.weights(&variance);
     let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
     let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
     let squared = |run: &Signals| inner(run, run, &channel_weights);
@@ -65,6 +67,7 @@ pub fn linearise_at<'a>(
         fit,
         layout,
         at,
+        objective,
         reach,
         weights: channel_weights,
         factor: factorise(&hessian),
@@ -80,7 +83,7 @@ impl Base<'_> {
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated from the start.
     pub fn fit(&self, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
-        fit_with(self.problem, start, weights, false, |layout, run, place| {
+        let column = |layout: &Layout, run: usize, place: usize| {
             if !layout.is_nuisance(place) {
                 return None;
             }
@@ -102,7 +105,12 @@ impl Base<'_> {
                 values.for_each(|x| *x *= factor);
             }
             Some(column)
-        })
+        };
+        let known = Known {
+            objective: self.objective,
+            column: &column,
+        };
+        fit_with(self.problem, start, weights, false, Some(known))
     }
 
     /// Change of the prediction of every run by each trial, divided by its share.

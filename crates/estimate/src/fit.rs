@@ -59,8 +59,7 @@ const NORMAL_95: f64 = 1.959_964;
 /// λ of (4) at the start, and how often it is raised before a step is given up.
 const FIRST_DAMPING: f64 = 1e-4;
 const MOST_DAMPINGS: usize = 8;
-/// Factor on the squared discrepancy beyond which the sensitivities of a fit are no longer kept: where so
-/// much has changed, the plant answers in another way.
+/// Factor on the squared discrepancy beyond which the sensitivities of a fit are no longer kept.
 const STALE: f64 = 2.0;
 
 /// Fits a set of effects, the nominal parameters under their prior, and the initial states.
@@ -68,16 +67,24 @@ const STALE: f64 = 2.0;
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated from the start.
 pub fn fit(problem: &Problem, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
-    fit_with(problem, start, weights, false, |_, _, _| None)
+    fit_with(problem, start, weights, false, None)
 }
 
-/// As [`fit`], with sensitivities at the start that are known already: by layout, run and place.
+/// Sensitivities that are known before a fit.
+pub(crate) struct Known<'a> {
+    /// The objective where they were taken.
+    pub(crate) objective: f64,
+    /// By layout, run and place.
+    pub(crate) column: &'a dyn Fn(&Layout, usize, usize) -> Option<Column>,
+}
+
+/// As [`fit`], with sensitivities that are known already, unless the start is far from where they were taken.
 pub(crate) fn fit_with(
     problem: &Problem,
     start: &Start,
     weights: &Weights,
     shared_held: bool,
-    known: impl Fn(&Layout, usize, usize) -> Option<Column>,
+    known: Option<Known<'_>>,
 ) -> Result<Fit, EstimateError> {
     let freedom = Freedom {
         nominal_prior: weights.nominal_prior,
@@ -87,17 +94,23 @@ pub(crate) fn fit_with(
     let merit = Merit::new(problem, weights);
     let mut theta = layout.pack(start);
     layout.make_physical(&mut theta);
-    let known: Vec<Vec<Option<Column>>> = (0..problem.runs.len())
+    let columns: Vec<Vec<Option<Column>>> = (0..problem.runs.len())
         .map(|run| {
             let places = 0..layout.entries(run).count();
-            places.map(|place| known(&layout, run, place)).collect()
+            let column = |place| (known.as_ref()?.column)(&layout, run, place);
+            places.map(column).collect()
         })
         .collect();
-    let unknown = |run: usize, place: usize| known[run][place].is_none();
+    let unknown = |run: usize, place: usize| columns[run][place].is_none();
     let first = probe(problem, &layout, &theta, unknown)?;
     let (mut objective, _) = merit.of(&layout, &theta, &first.discrepancy);
+    let stale = merit.of_a_factor(STALE);
+    // Where so much has changed the plant answers in another way: better or worse.
+    let is_near = known
+        .as_ref()
+        .is_some_and(|known| objective - known.objective < stale);
     let mut at = complete(problem, &layout, &theta, first, |run, place| {
-        known[run][place].clone()
+        columns[run][place].clone().filter(|_| is_near)
     })?;
     let fresh = |at: Linearised, theta: &[f64]| {
         // Those of the effects belong to their point always.
@@ -105,7 +118,7 @@ pub(crate) fn fit_with(
         complete(problem, &layout, theta, known, |_, _| None)
     };
     // Whether every sensitivity belongs to this point.
-    let mut exact = !weights.keep_nuisance;
+    let mut exact = !weights.keep_nuisance || !is_near;
     // Objective where the kept sensitivities were taken.
     let mut taken_at = objective;
     let mut damping = FIRST_DAMPING;
@@ -128,7 +141,7 @@ pub(crate) fn fit_with(
         };
         let gain = objective - next.objective;
         (theta, objective) = (next.theta, next.objective);
-        let is_far = taken_at - objective > merit.of_a_factor(STALE);
+        let is_far = taken_at - objective > stale;
         if is_far {
             taken_at = objective;
         }

@@ -27,17 +27,24 @@ pub fn fit_initial_states(
     fixed.given = given;
     let initial = problem.initial_guess();
     if own.is_empty() {
-        let direct = states_from(&fixed, initial.clone(), weights)?;
+        let mut best = states_from(&fixed, initial.clone(), weights)?;
         if !may_part(&fixed.given) {
-            return Ok(direct);
+            return Ok(best);
         }
-        // A part that cannot be simulated leads nowhere.
-        let led = led(&fixed, initial, weights).and_then(|led| states_from(&fixed, led, weights));
-        let enough = direct.objective - weights.converged;
-        return Ok(led
-            .ok()
-            .filter(|led| led.objective < enough)
-            .unwrap_or(direct));
+        let others = [
+            released(&fixed, &initial, weights),
+            Some(led(&fixed, initial, weights)),
+        ];
+        for start in others.into_iter().flatten() {
+            // A part that cannot be simulated leads nowhere.
+            let found = start.and_then(|start| states_from(&fixed, start, weights));
+            let enough = best.objective - weights.converged;
+            best = found
+                .ok()
+                .filter(|found| found.objective < enough)
+                .unwrap_or(best);
+        }
+        return Ok(best);
     }
     // Given what they share, the records have nothing to do with each other.
     let mut whole = Start {
@@ -53,7 +60,7 @@ pub fn fit_initial_states(
         }
         whole.initial.extend(best.estimate.initial);
     }
-    fit_with(&fixed, &whole, weights, true, |_, _, _| None)
+    fit_with(&fixed, &whole, weights, true, None)
 }
 
 /// Fits initial states from values that are about right, with everything else as given. What the outputs do not
@@ -76,6 +83,21 @@ pub fn fit_initial_states_from(
 fn may_part(effects: &[Placed]) -> bool {
     let mut effects = effects.iter();
     effects.any(|placed| placed.effect.family() == Family::Force)
+}
+
+/// Initial states fitted without what can hold a member still: from rest, no small change of them moves it. `None`
+/// where nothing can.
+fn released(
+    fixed: &Problem,
+    initial: &[Vec<f64>],
+    weights: &Weights,
+) -> Option<Result<Vec<Vec<f64>>, EstimateError>> {
+    let mut free = fixed.with_runs(fixed.runs.clone());
+    free.given.retain(|placed| !placed.action().is_dry());
+    (free.given.len() < fixed.given.len()).then(|| {
+        let fit = states_from(&free, initial.to_vec(), weights)?;
+        Ok(fit.estimate.initial)
+    })
 }
 
 /// Parts of a record, from its beginning, that an initial state is fitted to one after the other, and the samples
@@ -112,7 +134,7 @@ fn states_from(
         nominal: vec![],
         initial,
     };
-    fit_with(fixed, &start, weights, true, |_, _, _| None)
+    fit_with(fixed, &start, weights, true, None)
 }
 
 /// The model of a problem as a fit of [`fit_initial_states`] found it in one of the runs.
@@ -160,7 +182,7 @@ fn best_of(
             nominal: vec![],
             initial: vec![state.clone()],
         };
-        let fit = fit_with(alone, &start, weights, true, |_, _, _| None)?;
+        let fit = fit_with(alone, &start, weights, true, None)?;
         if best
             .as_ref()
             .is_none_or(|known| fit.objective < known.objective)

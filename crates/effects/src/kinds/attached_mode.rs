@@ -74,6 +74,8 @@ pub(super) fn octaves(scale: &SiteScale) -> impl Iterator<Item = f64> + use<> {
 
 /// Smallest attached mass, as a share of its host.
 const LIGHTEST: f64 = 1e-5;
+/// An attached mass that is this many times as heavy as its host hardly moves.
+const HEAVIEST: f64 = 10.0;
 
 impl Effect for AttachedMode {
     fn kind(&self) -> &'static str {
@@ -146,6 +148,13 @@ impl Effect for AttachedMode {
     /// A lighter one is no mass but a force that dies away, carried by a start kilometres off.
     fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
         values[0] >= LIGHTEST * scale.mass_kg
+    }
+
+    fn doubt(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+        let [least, _] = *ci95.first()?;
+        (least > HEAVIEST * scale.mass_kg).then_some(
+            "its mass is many times that of its host, which it holds as a spring to the ground would",
+        )
     }
 
     fn turns_into(&self) -> &'static [&'static str] {
