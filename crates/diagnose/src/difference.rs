@@ -125,17 +125,19 @@ pub(crate) fn is_told_from_none(placed: &Placed, intervals: &[Interval]) -> bool
     sizes.peek().is_none() || sizes.any(|(neutral, [low, high])| neutral < low || neutral > high)
 }
 
-/// A rival that contains an effect of the set and moves no output by more than the simulation may
+/// Whether a rival has a law of which an effect of the set is a special case.
+pub(crate) fn contains_named(set: &Hypothesis, rival: &Hypothesis) -> bool {
+    replacement(set, rival).is_some_and(|new| {
+        let is_special = |old: &Placed| new.effect.contains().contains(&old.effect.kind());
+        let mut effects = set.effects().iter();
+        effects.any(|old| old.at == new.at && is_special(old))
+    })
+}
+
+/// A rival that [contains](contains_named) an effect of the set and moves no output by more than the simulation may
 /// be off is worth no more than the set, less its penalty for further parameters.
 pub(crate) fn discount(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesis) {
-    let Some(new) = replacement(set, rival) else {
-        return;
-    };
-    let nested = set
-        .effects()
-        .iter()
-        .any(|old| old.at == new.at && new.effect.contains().contains(&old.effect.kind()));
-    if nested && !relevant_beyond_special_case(search, &rival.fit, &set.fit) {
+    if !relevant_beyond_special_case(search, &rival.fit, &set.fit) {
         rival.evidence = rival
             .evidence
             .min(set.evidence - search.penalty(rival, set));

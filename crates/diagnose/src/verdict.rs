@@ -7,7 +7,7 @@ use simgap_estimate::{EstimateError, Start};
 use crate::common_cause::is_common_cause;
 use crate::confirm::confirmed;
 use crate::difference::{
-    discount, fall, identified, is_sure, level, matters, must_lead, relevant,
+    contains_named, discount, fall, identified, is_sure, level, matters, must_lead, relevant,
     relevant_beyond_special_case, replacement,
 };
 use crate::evidence::{freedom, probabilities};
@@ -257,7 +257,13 @@ fn judge_effect(
     let mut rivals = search.extend(&subset, RIVALS)?;
     rivals.extend(search.grow(set, i)?);
     for rival in &mut rivals {
-        discount(search, set, rival);
+        if contains_named(set, rival) {
+            discount(search, set, rival);
+            if rival.evidence > set.evidence && !earns(search, rival, set)? {
+                // It would shrink to what is named.
+                rival.evidence = set.evidence;
+            }
+        }
         level(search, set, rival);
     }
     // The set was held against these when it took their place.
