@@ -18,7 +18,8 @@ const POINTS: usize = 48;
 const POINTS_OF_ONE: usize = 16;
 /// Values lie within this factor of the starting values.
 const SPREAD: f64 = 10.0;
-/// Sets fitted of effects with a shape, of those with one value and of swept ones, and from how many values of each.
+/// Sets fitted of effects with a shape, of those with one value and of swept ones, and from how many values of each
+/// that is not swept.
 const FITTED_OF_SHAPE: usize = 12;
 const FITTED_OF_ONE: usize = 6;
 const FITTED_OF_SWEPT: usize = 3;
@@ -37,15 +38,18 @@ impl Search<'_> {
         linear: &Base<'_>,
     ) -> Result<Vec<Hypothesis>, EstimateError> {
         let scored = self.candidates.par_iter().map(|(candidate, scale)| {
-            let scores = if candidate.effect.clock().is_some() {
-                score_shapes(linear, candidate, &candidate.effect.sweep(scale))
-            } else if candidate.effect.family().is_law() {
-                score_outright(linear, candidate, &points(candidate, scale))
+            let effect = candidate.effect;
+            let (scores, most) = if effect.clock().is_some() {
+                // The next best is beside the best.
+                (score_shapes(linear, candidate, &effect.sweep(scale)), 1)
+            } else if effect.family().is_law() {
+                let points = points(candidate, scale);
+                (score_outright(linear, candidate, &points), STARTS_OF_EACH)
             } else {
-                Ok(vec![])
+                return vec![];
             };
             let mut best = scores.unwrap_or_default();
-            best.truncate(STARTS_OF_EACH);
+            best.truncate(most);
             best
         });
         let scored = scored.collect::<Vec<_>>();

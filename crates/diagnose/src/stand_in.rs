@@ -6,7 +6,7 @@ use simgap_estimate::Interval;
 use crate::Gap;
 use crate::evidence::is_nominal;
 use crate::pipeline::Answer;
-use crate::unexplained::misses_little;
+use crate::unexplained::smooth_set_leaves;
 
 /// A value this near to the end of its range, relative to it, is at the end.
 const AT_THE_END: f64 = 1e-3;
@@ -37,9 +37,10 @@ pub(crate) fn doubts(answer: &Answer, gap: &Gap, i: usize) -> Vec<String> {
         // A converter, a lost sample: values at the end of a range are what they look like.
         return doubts;
     }
-    if misses_little(answer, gap) {
+    if smooth_set_leaves(answer, gap) {
         doubts.push(
-            "it leaves more than noise of all records, where the law itself would not".into(),
+            "what is named leaves more than noise, and without a force the true effects would not"
+                .into(),
         );
     }
     let fitted = answer.estimate.estimate.effects.get(i);

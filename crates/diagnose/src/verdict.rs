@@ -257,14 +257,16 @@ fn judge_effect(
     let mut rivals = search.extend(&subset, RIVALS)?;
     rivals.extend(search.grow(set, i)?);
     for rival in &mut rivals {
-        if contains_named(set, rival) {
+        let contains = contains_named(set, rival);
+        if contains {
             discount(search, set, rival);
-            if rival.evidence > set.evidence && !earns(search, rival, set)? {
-                // It would shrink to what is named.
-                rival.evidence = set.evidence;
-            }
         }
         level(search, set, rival);
+        let leads = contains && rival.evidence > set.evidence;
+        if leads && prune(search, rival.clone())?.key() == set.key() {
+            // It would shrink to what is named.
+            rival.evidence = set.evidence;
+        }
     }
     // The set was held against these when it took their place.
     let known = displaced.iter();

@@ -285,8 +285,8 @@ pub trait Effect: Sync + Send {
     /// but visible instance of the effect at this site.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>>;
 
-    /// Starting values over the whole range of a clock that may leave no line to start from. They are tried where no
-    /// single effect leaves only noise.
+    /// Starting values over the range of a clock that may leave no line to start from. They are tried where no single
+    /// effect leaves only noise.
     fn sweep(&self, _: &SiteScale) -> Vec<Vec<f64>> {
         vec![]
     }

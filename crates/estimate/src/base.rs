@@ -14,8 +14,14 @@ use crate::normal::{inner, inner_products, normal_equations};
 use crate::reach::Reach;
 use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 
-/// Columns that keep less than this of their energy past the nuisance are explained by it.
-const HIDDEN: f64 = 1e-9;
+/// Columns that keep less than this of their energy past the nuisance are explained by it: a trial is not small enough
+/// to be linear beyond that.
+const HIDDEN: f64 = 1e-6;
+/// Down to this share it may still be a column of its own (an offset beside a large sag), where it explains more than
+/// [`TELLS`]: rounding leaves less.
+const NEARLY_HIDDEN: f64 = 1e-9;
+/// bᵀâ that chance does not reach, twice the fall of the objective.
+const TELLS: f64 = 12.0;
 
 /// A fit, linearised once for the score of many effects.
 pub struct Base<'a> {
@@ -203,8 +209,8 @@ impl Base<'_> {
             let value = own[(i, j)] - taken;
             if i == j { value * (1.0 + 1e-9) } else { value }
         });
-        let seen = |i: usize| free[(i, i)] > HIDDEN * own[(i, i)];
-        if !(0..k).all(seen) {
+        let keeps = |share: f64| (0..k).all(|i| free[(i, i)] > share * own[(i, i)]);
+        if !keeps(NEARLY_HIDDEN) {
             return None;
         }
         let b: Vec<f64> = (0..k)
@@ -219,7 +225,7 @@ impl Base<'_> {
             .solve(Mat::from_fn(k, 1, |i, _| b[i]));
         let amplitude: Vec<f64> = (0..k).map(|i| solution[(i, 0)]).collect();
         let energy = amplitude.iter().zip(&b).map(|(a, b)| a * b).sum();
-        Some((amplitude, energy))
+        (keeps(HIDDEN) || energy > TELLS).then_some((amplitude, energy))
     }
 
     /// H⁻¹ times columns of JᵀW.

@@ -78,7 +78,8 @@ pub(crate) struct Known<'a> {
     pub(crate) column: &'a dyn Fn(&Layout, usize, usize) -> Option<Column>,
 }
 
-/// As [`fit`], with sensitivities that are known already, unless the start is far from where they were taken.
+/// As [`fit`], with sensitivities that are known already. Where a step with them does not come near the objective of
+/// where they were taken, the next takes its own.
 pub(crate) fn fit_with(
     problem: &Problem,
     start: &Start,
@@ -104,23 +105,19 @@ pub(crate) fn fit_with(
     let unknown = |run: usize, place: usize| columns[run][place].is_none();
     let first = probe(problem, &layout, &theta, unknown)?;
     let (mut objective, _) = merit.of(&layout, &theta, &first.discrepancy);
-    let stale = merit.of_a_factor(STALE);
-    // Where so much has changed the plant answers in another way: better or worse.
-    let is_near = known
-        .as_ref()
-        .is_some_and(|known| objective - known.objective < stale);
     let mut at = complete(problem, &layout, &theta, first, |run, place| {
-        columns[run][place].clone().filter(|_| is_near)
+        columns[run][place].clone()
     })?;
+    let stale = merit.of_a_factor(STALE);
     let fresh = |at: Linearised, theta: &[f64]| {
         // Those of the effects belong to their point always.
         let known = Probe::of_linearised(at, |place| !layout.is_nuisance(place));
         complete(problem, &layout, theta, known, |_, _| None)
     };
     // Whether every sensitivity belongs to this point.
-    let mut exact = !weights.keep_nuisance || !is_near;
-    // Objective where the kept sensitivities were taken.
-    let mut taken_at = objective;
+    let mut exact = !weights.keep_nuisance;
+    // Objective where the kept sensitivities were taken, or that of a better start.
+    let mut taken_at = known.map_or(objective, |known| objective.min(known.objective));
     let mut damping = FIRST_DAMPING;
     let mut iterations = 0;
     while iterations < weights.most_steps {
@@ -141,7 +138,7 @@ pub(crate) fn fit_with(
         };
         let gain = objective - next.objective;
         (theta, objective) = (next.theta, next.objective);
-        let is_far = taken_at - objective > stale;
+        let is_far = (taken_at - objective).abs() > stale;
         if is_far {
             taken_at = objective;
         }

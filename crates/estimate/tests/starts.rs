@@ -68,8 +68,8 @@ fn verify_a_fit_does_not_keep_sensitivities_of_another_plant() {
     assert!(fitted.variance[0] < 1.2e-10, "{:?}", fitted.variance);
 }
 
-/// A weight sags by g m / k, and an offset of the sensor looks like another stiffness: only the prior on it tells,
-/// which leaves a small part of a millionth of the energy of the offset.
+/// A weight sags by g m / k, and an offset of the sensor looks like another stiffness: what the motion and the prior
+/// say of that leaves a small part of a millionth of the energy of the offset.
 #[test]
 fn verify_an_offset_beside_a_sag_has_a_score() {
     let text = format!("{OSCILLATOR}[[load]]\nat = \"block\"\nvalue = -8000.0\n");
@@ -92,6 +92,33 @@ fn verify_an_offset_beside_a_sag_has_a_score() {
     let scores = score(&linear, &candidate("sensor_bias", channel), &scale).unwrap();
     let asked = scores.first().map(|score| score.start.values[0]);
     assert!(asked.is_some_and(|asked| asked > 0.1), "{asked:?}");
+}
+
+/// A spring beside one whose stiffness is free brings next to nothing, however far that one is off; held, it does.
+#[test]
+fn verify_what_a_free_parameter_explains_is_no_gain() {
+    let model = model(OSCILLATOR);
+    let at = between("block", "ground");
+    let stiff = placed("stiffness_error", at.clone(), &[1.01]);
+    let run = truth(&model, &[stiff], drive(0.01, 400, 6.0), 0.01, &[0.0; 2]);
+    let problem = problem(&model, noisy(&run, 1e-5, 3));
+    let as_given = Weights {
+        most_steps: 0,
+        ..Weights::independent(1)
+    };
+    let free = placed("stiffness_error", at.clone(), &[1.0]);
+    let spring = candidate("linear_stiffness", at);
+    let gain = |effects: Vec<simgap_effects::Placed>| {
+        let base = fit(&problem, &start(effects, vec![], &[0.0; 2]), &as_given).unwrap();
+        let linear = linearise_at(&problem, &base, &as_given).unwrap();
+        let scores = score(&linear, &spring, &scale()).unwrap();
+        scores.first().map_or(0.0, |score| score.gain)
+    };
+    let (beside, alone) = (gain(vec![free]), gain(vec![]));
+    assert!(
+        beside < 0.01 * alone && alone > 100.0,
+        "{beside} of {alone}"
+    );
 }
 
 /// Beside a broadband motion a stiffness that swings leaves no line; the sweep finds its frequency.

@@ -74,7 +74,7 @@ pub(super) fn octaves(scale: &SiteScale) -> impl Iterator<Item = f64> + use<> {
 
 /// Smallest attached mass, as a share of its host.
 const LIGHTEST: f64 = 1e-5;
-/// An attached mass that is this many times as heavy as its host hardly moves.
+/// An attached mass that is this many times as heavy as its host is hardly carried by it.
 const HEAVIEST: f64 = 10.0;
 
 impl Effect for AttachedMode {
@@ -153,7 +153,7 @@ impl Effect for AttachedMode {
     fn doubt(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
         let [least, _] = *ci95.first()?;
         (least > HEAVIEST * scale.mass_kg).then_some(
-            "its mass is many times that of its host, which it holds as a spring to the ground would",
+            "its mass is many times that of its host: which of the two carries the other, and whether it moves, is open",
         )
     }
 
@@ -209,5 +209,21 @@ impl Effect for AttachedMode {
 
     fn experiment(&self) -> &'static str {
         "a sine sweep through the suspected frequency: a mode answers in proportion to the input and turns the phase"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mass_that_carries_its_host_is_in_doubt() {
+        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
+        let of = |mass: [f64; 2]| AttachedMode.doubt(&[mass], &scale);
+        let host = scale.mass_kg;
+        assert!(of([20.0 * host, 30.0 * host]).is_some());
+        assert!(of([0.1 * host, 0.2 * host]).is_none());
+        // An interval that holds a light one says nothing.
+        assert!(of([5.0 * host, 30.0 * host]).is_none());
     }
 }

@@ -94,11 +94,17 @@ impl Effect for TimeVaryingStiffness {
         found.into_iter().map(|freq| start(freq, scale)).collect()
     }
 
-    /// Beside a motion of many frequencies it leaves none of its own. Half a period more in the record for each, up to
-    /// four times the frequency of the motion: twice that of a mode it excites.
+    /// Beside a motion of many frequencies it leaves no line of its own. Half a period more in the record for each, up
+    /// to four times the frequency of the motion (twice that at which it excites a mode), or as far as [`SWEPT`] goes.
     fn sweep(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         let step = 0.5 / scale.duration_s;
-        let most = (4.0 * scale.motion_hz[0]).min(0.5 / scale.time_step_s);
+        let nyquist = 0.5 / scale.time_step_s;
+        let motion = scale.motion_hz[0];
+        let most = if motion > 0.0 {
+            nyquist.min(4.0 * motion)
+        } else {
+            nyquist
+        };
         (2..=SWEPT)
             .map(|half_periods| half_periods as f64 * step)
             .take_while(|freq| *freq < most)

@@ -28,6 +28,8 @@ pub struct Followed {
 
 impl Followed {
     /// At the end of the move.
+    #[inline(always)]
+    #[must_use]
     pub fn arrived(force: f64, memory: f64) -> Self {
         Self {
             force,
@@ -73,15 +75,6 @@ pub trait ForceLaw: Any + Send + Sync {
         Followed::arrived(self.force(to), memory)
     }
 
-    /// The whole move by [`ForceLaw::follow_step`]; not to be overridden.
-    fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> Followed {
-        let mut at = self.follow_step(memory, 1.0, from, to);
-        while at.left > 0.0 {
-            at = self.follow_step(at.memory, at.left, from, to);
-        }
-        at
-    }
-
     /// Largest dry force at the sliding speed |v| (m/s), N, not negative; `None` for a law
     /// without a dry part.
     fn dry_level(&self, speed: f64) -> Option<f64> {
@@ -94,6 +87,17 @@ pub trait ForceLaw: Any + Send + Sync {
     fn lanes(&self, peers: &[&dyn ForceLaw]) -> Option<Box<dyn LaneLaw>> {
         let _ = peers;
         None
+    }
+}
+
+impl dyn ForceLaw {
+    /// The whole move by [`ForceLaw::follow_step`].
+    pub fn follow(&self, memory: f64, from: MemberMotion, to: MemberMotion) -> Followed {
+        let mut at = self.follow_step(memory, 1.0, from, to);
+        while at.left > 0.0 {
+            at = self.follow_step(at.memory, at.left, from, to);
+        }
+        at
     }
 }
 
