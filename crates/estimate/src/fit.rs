@@ -114,19 +114,32 @@ pub(crate) fn fit_with(
         let known = Probe::of_linearised(at, |place| !layout.is_nuisance(place));
         complete(problem, &layout, theta, known, |_, _| None)
     };
+    let search = Line {
+        layout: &layout,
+        merit: &merit,
+    };
+    let along = |_: usize, place: usize| !(weights.keep_nuisance && layout.is_nuisance(place));
+    let base = known.map_or(objective, |known| known.objective);
+    if objective - base > stale {
+        // So far from where they were taken, known sensitivities lead astray, or past what those of the start run into:
+        // whichever step goes further.
+        let own = fresh(at.clone(), &theta)?;
+        let reached = |at: &Linearised| {
+            let next = search.step(&theta, objective, at, &mut FIRST_DAMPING.clone(), along);
+            next.map_or(objective, |next| next.objective)
+        };
+        if reached(&own) < reached(&at) {
+            at = own;
+        }
+    }
     // Whether every sensitivity belongs to this point.
     let mut exact = !weights.keep_nuisance;
     // Objective where the kept sensitivities were taken, or that of a better start.
-    let mut taken_at = known.map_or(objective, |known| objective.min(known.objective));
+    let mut taken_at = objective.min(base);
     let mut damping = FIRST_DAMPING;
     let mut iterations = 0;
     while iterations < weights.most_steps {
         iterations += 1;
-        let search = Line {
-            layout: &layout,
-            merit: &merit,
-        };
-        let along = |_: usize, place: usize| !(weights.keep_nuisance && layout.is_nuisance(place));
         let Some(next) = search.step(&theta, objective, &at, &mut damping, along) else {
             if exact {
                 break;

@@ -21,6 +21,7 @@ pub(crate) type Signals = Vec<Vec<f64>>;
 pub(crate) type Column = Arc<Signals>;
 
 /// Discrepancies (measured minus predicted) and the sensitivities of the predictions.
+#[derive(Clone)]
 pub(crate) struct Linearised {
     /// For each run and channel, measured minus predicted.
     pub(crate) discrepancy: Vec<Signals>,
