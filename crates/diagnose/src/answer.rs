@@ -26,9 +26,10 @@ const MOST_RIVALS: usize = 2;
 const SHOWN: usize = 12;
 
 pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
-    let effects: Vec<NamedEffect> = (0..answer.judged.len())
-        .map(|i| named(answer, gap, i))
-        .collect();
+    // What does most comes first.
+    let mut order: Vec<usize> = (0..answer.judged.len()).collect();
+    order.sort_by(|&i, &j| answer.judged[j].worth.total_cmp(&answer.judged[i].worth));
+    let effects: Vec<NamedEffect> = order.into_iter().map(|i| named(answer, gap, i)).collect();
     let mut status = if effects.is_empty() {
         Status::None
     } else if answer.names_more_than_parameters() {

@@ -64,6 +64,7 @@ mod common_cause;
 pub mod compare;
 mod confirm;
 mod data;
+mod degenerate;
 mod diagnosis;
 mod difference;
 mod error;

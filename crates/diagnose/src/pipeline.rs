@@ -326,6 +326,8 @@ fn search(
         Ok(sets)
     };
     let finalists = again(&pool[..pool.len().min(FINALISTS)])?;
+    let shown = finalists.into_par_iter().filter(|set| search.shows(set));
+    let finalists: Vec<Hypothesis> = shown.collect();
     let singles: Vec<Hypothesis> = pool
         .into_iter()
         .filter(|set| set.effects().len() == 1)

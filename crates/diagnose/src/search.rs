@@ -387,7 +387,11 @@ impl<'a> Search<'a> {
         step("single effects");
         let linear = linearise_at(self.problem, &base.fit, &self.weights)?;
         let mut pool = self.extend_at(base, &linear, FITTED[0])?;
-        if !pool.iter().any(|set| self.is_exhausted(set)) {
+        let is_told = |pool: &[Hypothesis]| {
+            let mut sets = pool.iter();
+            sets.any(|set| self.is_exhausted(set) && self.shows(set))
+        };
+        if !is_told(&pool) {
             step("single effects from afar");
             pool.extend(self.fit_from_afar(base, &linear)?);
         }
@@ -396,12 +400,13 @@ impl<'a> Search<'a> {
         unique(&mut pool);
         let mut front = pool.clone();
         for (size, survivors) in SURVIVORS.iter().enumerate() {
-            if pool.iter().any(|set| self.is_exhausted(set)) {
+            if is_told(&pool) {
                 break;
             }
             step(["pairs of effects", "sets of three"][size]);
             let mut next: Vec<Hypothesis> = Vec::new();
-            for survivor in front.iter().take(*survivors) {
+            let shown = front.iter().filter(|set| self.shows(set));
+            for survivor in shown.take(*survivors) {
                 next.extend(self.extend(survivor, FITTED[size + 1])?);
             }
             sort(&mut next);

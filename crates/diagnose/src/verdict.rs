@@ -84,7 +84,7 @@ pub(crate) fn simplest(
                 size(set) < size(larger)
                     && (does_as_well(search, larger, set) || is_common_cause(search, set, larger))
             };
-            does(best) && does(simplest)
+            does(best) && does(simplest) && search.shows(set)
         });
         let next = smaller.max_by(|a, b| {
             let by_size = size(a).cmp(&size(b));
@@ -271,7 +271,10 @@ fn judge_effect(
     // The set was held against these when it took their place.
     let known = displaced.iter();
     rivals.extend(known.filter(|old| old.replaces(i, set)).cloned());
-    rivals.retain(|rival| rival.key() != set.key());
+    rivals.retain(|rival| {
+        let is_behind = rival.evidence < set.evidence - INDISTINGUISHABLE;
+        rival.key() != set.key() && (is_behind || search.shows(rival))
+    });
     sort(&mut rivals);
     unique(&mut rivals);
     let mut each = vec![set.evidence, subset.evidence];

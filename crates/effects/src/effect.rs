@@ -141,6 +141,8 @@ impl Parameter {
 pub struct Clock {
     /// Place of the amplitude among the parameters.
     pub amplitude: usize,
+    /// Place of the frequency f, Hz.
+    pub frequency: usize,
     /// Place of the phase, rad.
     pub phase: usize,
 }
@@ -328,6 +330,13 @@ pub trait Effect: Sync + Send {
     fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
         let _ = (values, scale);
         true
+    }
+
+    /// Values at which nothing is left of what the kind says, with the values that a record has of its own to be found
+    /// again: a mode that nothing excites. A fit that is no better than there does not show what it names.
+    fn degenerate(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let _ = values;
+        vec![]
     }
 
     /// Why the intervals of fitted values look like those of something else that this law imitates, at a

@@ -56,7 +56,7 @@ pub fn linearise_at<'a>(
         nominal_prior: weights.nominal_prior,
         shared_held: false,
     };
-    let layout = Layout::new(&fit.estimate, &state_scale(problem), freedom);
+    let layout = Layout::new(&fit.estimate, &problem.runs, &state_scale(problem), freedom);
     let theta = layout.pack(&fit.estimate);
     let at = linearise(problem, &layout, &theta)?;
     let merit = Merit::new(problem, weights);

@@ -91,7 +91,7 @@ pub(crate) fn fit_with(
         nominal_prior: weights.nominal_prior,
         shared_held,
     };
-    let layout = Layout::new(start, &state_scale(problem), freedom);
+    let layout = Layout::new(start, &problem.runs, &state_scale(problem), freedom);
     let merit = Merit::new(problem, weights);
     let mut theta = layout.pack(start);
     layout.make_physical(&mut theta);
@@ -161,7 +161,7 @@ pub(crate) fn fit_with(
             (keep && layout.is_nuisance(place)).then(|| kept[run][place].clone())
         })?;
         if gain >= weights.converged {
-            exact = !weights.keep_nuisance;
+            exact = !keep;
         } else if exact {
             break;
         } else {
@@ -293,7 +293,7 @@ fn finish(
                 ci95: [f64::NEG_INFINITY, f64::INFINITY],
             };
         };
-        let half = NORMAL_95 * spread[entry].sqrt() * layout.scale[entry];
+        let half = NORMAL_95 * layout.variance(entry, &spread).sqrt();
         Interval {
             value,
             ci95: [

@@ -1,7 +1,10 @@
 //! Which numbers a fit may change, and in which order they stand.
 
+use std::f64::consts::TAU;
+
 use simgap_effects::{Effect, Parameter, Placed};
 use simgap_model::Location;
+use simgap_simulate::Run;
 
 /// A catalogue entry at a place, without values.
 #[derive(Clone)]
@@ -49,6 +52,9 @@ const SHAPE_REACH: f64 = 10.0;
 
 /// The vector θ: values of the effects that all records share, then the nominal parameters; then,
 /// run by run, the effects' values of its own and its initial state.
+///
+/// A phase φ at time zero stands in it as that in the middle of its run, φ + 2π f t: a record that begins an hour
+/// after zero says next to nothing of the one without the other, and all it can of these two.
 pub(crate) struct Layout {
     effects: Vec<Placed>,
     nominal: Vec<Placed>,
@@ -56,8 +62,11 @@ pub(crate) struct Layout {
     shared_values: Vec<(usize, usize)>,
     /// Effect and place of each value that a run has of its own.
     own_values: Vec<(usize, usize)>,
+    /// Phases among the values of a run's own: which they are, with the entry of their frequency.
+    phases: Vec<(usize, usize)>,
     state_len: usize,
-    run_count: usize,
+    /// The middle of each run, s.
+    middle_s: Vec<f64>,
     /// Typical size of each entry of θ.
     pub(crate) scale: Vec<f64>,
     /// Prior standard deviation about the neutral value; infinite where free.
@@ -67,8 +76,17 @@ pub(crate) struct Layout {
     pub(crate) upper: Vec<f64>,
 }
 
+fn middle(run: &Run) -> f64 {
+    run.start_s + 0.5 * run.len as f64 * run.time_step_s
+}
+
 impl Layout {
-    pub(crate) fn new(start: &Start, state_scale: &[f64], freedom: Freedom) -> Layout {
+    pub(crate) fn new(
+        start: &Start,
+        runs: &[Run],
+        state_scale: &[f64],
+        freedom: Freedom,
+    ) -> Layout {
         let places = |own: bool| -> Vec<(usize, usize)> {
             let effects = start.effects.iter().enumerate();
             effects
@@ -83,8 +101,9 @@ impl Layout {
             nominal: start.nominal.clone(),
             shared_values: places(false),
             own_values: places(true),
+            phases: vec![],
             state_len: state_scale.len(),
-            run_count: start.initial.len(),
+            middle_s: runs.iter().map(middle).collect(),
             scale: vec![],
             prior_std: vec![],
             prior_mean: vec![],
@@ -113,8 +132,13 @@ impl Layout {
                 layout.push_parameter(parameter, value.max(parameter.lower), freedom.nominal_prior);
             }
         }
-        for run in 0..layout.run_count {
-            for &(e, i) in &layout.own_values.clone() {
+        layout.phases = layout.phases_of_clocks();
+        for run in 0..layout.middle_s.len() {
+            for (own, (e, i)) in layout.own_values.clone().into_iter().enumerate() {
+                if layout.phases.iter().any(|(phase, _)| *phase == own) {
+                    layout.push(1.0, [f64::NEG_INFINITY, f64::INFINITY]);
+                    continue;
+                }
                 let value = start.effects[e].in_record(run).values[i];
                 let parameter = &start.effects[e].effect.parameters()[i];
                 layout.push_parameter(parameter, value, f64::INFINITY);
@@ -124,6 +148,25 @@ impl Layout {
             }
         }
         layout
+    }
+
+    fn phases_of_clocks(&self) -> Vec<(usize, usize)> {
+        let own = self.own_values.iter().enumerate();
+        let phases = own.filter_map(|(own, &(e, i))| {
+            let clock = self.effects[e].effect.clock()?;
+            let key = (e, clock.frequency);
+            let frequency = self.shared_values.iter().position(|known| *known == key)?;
+            (clock.phase == i).then_some((own, frequency))
+        });
+        phases.collect()
+    }
+
+    /// What a phase in the middle of a run is ahead of that at time zero, rad.
+    fn ahead(&self, run: usize, own: usize, theta: &[f64]) -> f64 {
+        let phase = self.phases.iter().find(|(phase, _)| *phase == own);
+        phase.map_or(0.0, |&(_, frequency)| {
+            TAU * theta[frequency] * self.middle_s[run]
+        })
     }
 
     fn push(&mut self, scale: f64, [lower, upper]: [f64; 2]) {
@@ -223,10 +266,22 @@ impl Layout {
         at(&self.shared_values).or_else(|| at(&self.own_values).map(|own| self.run_offset(0) + own))
     }
 
+    /// Variance of a value that an entry stands for, from that of each entry in units of its scale. In the middle of
+    /// a run a phase has next to nothing to do with the frequency.
+    pub(crate) fn variance(&self, entry: usize, spread: &[f64]) -> f64 {
+        let own = |entry: usize| spread[entry] * self.scale[entry].powi(2);
+        let first = self.run_offset(0);
+        let phase = self.phases.iter().find(|(own, _)| first + own == entry);
+        let turned = phase.map_or(0.0, |&(_, frequency)| {
+            own(frequency) * (TAU * self.middle_s[0]).powi(2)
+        });
+        own(entry) + turned
+    }
+
     /// Every entry of an effect, with the effect and which of its values it is.
     pub(crate) fn effect_entries(&self) -> impl Iterator<Item = (usize, &Placed, usize)> {
         let shared = self.shared_values.iter().enumerate();
-        let own = (0..self.run_count).flat_map(move |run| {
+        let own = (0..self.middle_s.len()).flat_map(move |run| {
             let values = self.own_values.iter().enumerate();
             values.map(move |(i, key)| (self.run_offset(run) + i, key))
         });
@@ -240,8 +295,10 @@ impl Layout {
         let mut theta: Vec<f64> = shared.map(|&(e, i)| effects[e].values[i]).collect();
         theta.extend(start.nominal.iter().flat_map(|p| p.values.iter().copied()));
         for (run, initial) in start.initial.iter().enumerate() {
-            let own = self.own_values.iter();
-            theta.extend(own.map(|&(e, i)| effects[e].in_record(run).values[i]));
+            for (own, &(e, i)) in self.own_values.iter().enumerate() {
+                let value = effects[e].in_record(run).values[i];
+                theta.push(value + self.ahead(run, own, &theta));
+            }
             theta.extend(initial);
         }
         theta
@@ -256,12 +313,13 @@ impl Layout {
             placed.of_record = if placed.own_places().is_empty() {
                 vec![]
             } else {
-                vec![vec![]; self.run_count]
+                vec![vec![]; self.middle_s.len()]
             };
         }
-        for run in 0..self.run_count {
-            let own = &theta[self.run_offset(run)..];
-            for (&(e, i), &value) in self.own_values.iter().zip(own) {
+        for run in 0..self.middle_s.len() {
+            let values = &theta[self.run_offset(run)..];
+            for (own, (&(e, i), value)) in self.own_values.iter().zip(values).enumerate() {
+                let value = value - self.ahead(run, own, theta);
                 effects[e].of_record[run].push(value);
                 if run == 0 {
                     effects[e].values[i] = value;
@@ -274,7 +332,7 @@ impl Layout {
             ..placed.clone()
         });
         let nominal = nominal.collect();
-        let initial = (0..self.run_count)
+        let initial = (0..self.middle_s.len())
             .map(|run| self.state(theta, run).to_vec())
             .collect();
         Start {

@@ -4,6 +4,8 @@
 
 mod support;
 
+use std::f64::consts::TAU;
+
 use proptest::prelude::*;
 use simgap_estimate::{Fit, Start, Weights, fit, fit_initial_states, linearise_at, score};
 use simgap_model::Location;
@@ -229,5 +231,45 @@ fn verify_a_fit_never_ends_above_its_start() {
         assert!(fitted.objective <= base.objective, "from {size}");
         let found = fitted.estimate.effects[0].values[0];
         assert!((found / 3e5 - 1.0).abs() < 0.05, "{found} from {size}");
+    }
+}
+
+/// A tone in four of its cycles, an hour after time zero: its phase there and its frequency stand in for each other
+/// but for a ten-thousandth.
+#[test]
+fn verify_a_tone_is_followed_long_after_time_zero() {
+    let model = model(&OSCILLATOR.replace("damping = 6.0", "damping = 1.0"));
+    let mass = || Location::Mass("block".into());
+    let (step, len) = (0.001, 1250);
+    for start_s in [0.0, 62.0, 3600.0] {
+        let phase = |freq: f64, of_record: f64| of_record - TAU * freq * start_s;
+        let tone = placed("harmonic_force", mass(), &[5.0, 3.2, 0.6]);
+        let force = drive(step, len, 10.0);
+        let mut run = truth(&model, &[tone], force, step, &[1e-3, 0.0]);
+        run.start_s = start_s;
+        let problem = problem(&model, noisy(&run, 1e-6, 3));
+        let near = placed("harmonic_force", mass(), &[4.9, 3.21, phase(3.21, 0.5)]);
+        let search = Weights {
+            most_steps: 10,
+            ..Weights::independent(1)
+        };
+        let fitted = fit(&problem, &start(vec![near], vec![], &[0.0; 2]), &search).unwrap();
+        let interval = fitted.intervals[0][1];
+        let (found, [low, high]) = (interval.value, interval.ci95);
+        assert!(
+            fitted.variance[0] < 1.1e-12,
+            "{:?} at {start_s} s",
+            fitted.variance
+        );
+        assert!(
+            (low..high).contains(&3.2) && high - low < 2e-3,
+            "{found} at {start_s} s"
+        );
+        // At time zero the phase is as uncertain as the frequency makes it.
+        let [low, high] = fitted.intervals[0][2].ci95;
+        assert!(
+            (low..high).contains(&phase(3.2, 0.6)),
+            "{low} to {high} at {start_s} s"
+        );
     }
 }

@@ -74,6 +74,9 @@ pub(super) fn octaves(scale: &SiteScale) -> impl Iterator<Item = f64> + use<> {
 
 /// Smallest attached mass, as a share of its host.
 const LIGHTEST: f64 = 1e-5;
+/// An attached mass this many times lighter does not move its host by being carried, and one as many times heavier is
+/// not carried.
+const OUT_OF_PROPORTION: f64 = 1e3;
 /// An attached mass that is this many times as heavy as its host is hardly carried by it.
 const HEAVIEST: f64 = 10.0;
 
@@ -148,6 +151,19 @@ impl Effect for AttachedMode {
     /// A lighter one is no mass but a force that dies away, carried by a start kilometres off.
     fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
         values[0] >= LIGHTEST * scale.mass_kg
+    }
+
+    /// One too light to be excited by its host, which rings by its start alone; one too heavy to be moved, and so a
+    /// spring and a damper to the ground.
+    fn degenerate(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let [mass, freq_hz, damping_ratio] = [values[0], values[1], values[2]];
+        let (light, heavy) = (mass / OUT_OF_PROPORTION, mass * OUT_OF_PROPORTION);
+        // The same spring and damper.
+        let slower = OUT_OF_PROPORTION.sqrt();
+        vec![
+            vec![light, freq_hz, damping_ratio, 0.0, 0.0],
+            vec![heavy, freq_hz / slower, damping_ratio / slower, 0.0, 0.0],
+        ]
     }
 
     fn doubt(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {

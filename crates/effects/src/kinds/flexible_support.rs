@@ -24,6 +24,9 @@ pub(crate) struct FlexibleSupport;
 /// Name of the mass of the support.
 const NAME: &str = "(support)";
 
+/// A support this many times stiffer is not moved.
+const OUT_OF_PROPORTION: f64 = 1e3;
+
 fn stand(model: &mut Model, at: &Location, [mass, stiffness, damping_ratio]: [f64; 3]) {
     let Location::Between(pair) = at else {
         return;
@@ -134,6 +137,12 @@ impl Effect for FlexibleSupport {
             }
         }
         starts
+    }
+
+    /// One too stiff and too heavy to be moved, which rings by its start alone.
+    fn degenerate(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let rigid = [values[0], values[1]].map(|value| OUT_OF_PROPORTION * value);
+        vec![vec![rigid[0], rigid[1], values[2], 0.0, 0.0]]
     }
 
     fn turns_into(&self) -> &'static [&'static str] {

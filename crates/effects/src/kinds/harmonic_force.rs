@@ -77,6 +77,7 @@ impl Effect for HarmonicForce {
     fn clock(&self) -> Option<Clock> {
         Some(Clock {
             amplitude: 0,
+            frequency: 1,
             phase: 2,
         })
     }

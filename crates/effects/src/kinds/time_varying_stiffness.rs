@@ -115,6 +115,7 @@ impl Effect for TimeVaryingStiffness {
     fn clock(&self) -> Option<Clock> {
         Some(Clock {
             amplitude: 0,
+            frequency: 1,
             phase: 2,
         })
     }

@@ -107,6 +107,7 @@ impl Effect for TonePickup {
     fn clock(&self) -> Option<Clock> {
         Some(Clock {
             amplitude: 0,
+            frequency: 1,
             phase: 2,
         })
     }
