@@ -61,9 +61,9 @@ pub(crate) fn doubts(answer: &Answer, gap: &Gap, i: usize) -> Vec<String> {
             doubts.push(format!("these records hardly show its {}", parameter.name));
         }
     }
-    let ci95: Vec<[f64; 2]> = intervals.map(|interval| interval.ci95).collect();
+    doubts.extend(misnomer(answer, i).map(str::to_owned));
     if let Some(scale) = &judged.scale {
-        let own = placed.effect.doubt(&ci95, scale);
+        let own = placed.effect.doubt(&ci95(answer, i), scale);
         doubts.extend(own.map(str::to_owned));
         if !placed.effect.keeps_its_meaning(values, scale) {
             doubts.push("its values have left what its name means".into());
@@ -79,6 +79,18 @@ pub(crate) fn doubts(answer: &Answer, gap: &Gap, i: usize) -> Vec<String> {
         ));
     }
     doubts
+}
+
+/// Why the values of the i-th named effect belie its name.
+pub(crate) fn misnomer(answer: &Answer, i: usize) -> Option<&'static str> {
+    let judged = &answer.judged[i];
+    let scale = judged.scale.as_ref()?;
+    judged.placed.effect.misnomer(&ci95(answer, i), scale)
+}
+
+fn ci95(answer: &Answer, i: usize) -> Vec<[f64; 2]> {
+    let intervals = answer.estimate.intervals.get(i).into_iter().flatten();
+    intervals.map(|interval| interval.ci95).collect()
 }
 
 /// Another effect at the place of the i-th that together with it may imitate a third: of the machine, or a

@@ -142,6 +142,19 @@ fn verify_a_law_is_not_made_of_a_spring_that_is_gone() {
     assert!(honest, "{verdict:?}");
 }
 
+/// A damper of the model that is off damps alike in both directions. Where dampers are not looked for, a law by
+/// direction is not named.
+#[test]
+fn verify_a_damper_that_is_off_is_no_asymmetry() {
+    let truth = [placed("damping_error", ground(), &[1.3])];
+    let outcome = diagnosed(&truth, &["damping_error"]);
+    let named = named(&outcome);
+    assert!(
+        named.iter().all(|(kind, _)| kind != "asymmetric_damping"),
+        "{named:?}"
+    );
+}
+
 /// What comes late on every channel by the same time was late before the sensors. Where nothing before them is
 /// looked for, it is not blamed on each of them.
 #[test]

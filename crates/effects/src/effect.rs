@@ -346,6 +346,13 @@ pub trait Effect: Sync + Send {
         None
     }
 
+    /// Why the intervals of fitted values, at a place of these sizes, belie the name of the kind: an asymmetry whose
+    /// two sides are one. `None` where they do not. A law that fits so is another one, by whatever name.
+    fn misnomer(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+        let _ = (ci95, scale);
+        None
+    }
+
     /// Makes the events of an effect that strikes at random (lost samples, spikes), for generated
     /// cases: the signal with its events, from numbers evenly drawn in 0 to 1. `None` for an effect
     /// that its [`Effect::action`] describes in full.

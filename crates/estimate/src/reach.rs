@@ -111,6 +111,8 @@ mod tests {
         // Sample 795 lies at 798.98, the next one beyond the record.
         assert_eq!(reach(&[shift("clock_skew", 0.005)]), 0..796);
         assert_eq!(reach(&[shift("alternating_timing", 0.004)]), 0..800);
+        // By two and a half samples: 1 lies before the record, 798 after it.
+        assert_eq!(reach(&[shift("alternating_timing", 0.025)]), 2..798);
         let both = [shift("sensor_delay", 0.025), shift("clock_skew", 0.005)];
         assert_eq!(reach(&both), 3..796);
         // No more than a hundredth of a record is left out.

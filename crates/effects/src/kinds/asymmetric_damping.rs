@@ -14,6 +14,9 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// Reference: \[Janot2019\], for a positioning axis.
 pub(crate) struct AsymmetricDamping;
 
+/// Dampings whose intervals overlap and that are apart by less than this share of the larger are one.
+const ONE_DAMPING: f64 = 0.1;
+
 struct Law {
     forward: f64,
     backward: f64,
@@ -97,11 +100,15 @@ impl Effect for AsymmetricDamping {
         }))
     }
 
-    fn doubt(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
+    fn misnomer(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
         let &[[low, high], [other_low, other_high]] = ci95 else {
             return None;
         };
-        (low <= other_high && other_low <= high).then_some(
+        let middles = [0.5 * (low + high), 0.5 * (other_low + other_high)];
+        let apart = (middles[0] - middles[1]).abs();
+        // Where only the two together are known badly, wide intervals overlap however far they are apart.
+        let is_one = apart < ONE_DAMPING * middles[0].abs().max(middles[1].abs());
+        (is_one && low <= other_high && other_low <= high).then_some(
             "its two dampings are the same but for their intervals: one damping would do",
         )
     }
@@ -115,5 +122,22 @@ impl Effect for AsymmetricDamping {
 
     fn experiment(&self) -> &'static str {
         "constant speeds in both directions: the force against the speed has another slope on each side"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_dampings_that_are_one_are_no_asymmetry() {
+        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
+        let misnomer = |ci95: [[f64; 2]; 2]| AsymmetricDamping.misnomer(&ci95, &scale).is_some();
+        assert!(misnomer([[140.0, 177.0], [138.0, 175.0]]));
+        assert!(misnomer([[-3.05, -2.38], [-3.03, -2.36]]));
+        // Apart; and apart by more than either is known, the two together known badly.
+        assert!(!misnomer([[140.0, 150.0], [160.0, 170.0]]));
+        assert!(!misnomer([[-6.6, 4.8], [-0.9, 10.6]]));
+        assert!(!misnomer([[35.0, 45.0], [-45.0, -35.0]]));
     }
 }

@@ -103,7 +103,7 @@ impl Effect for EndStop {
         }))
     }
 
-    fn doubt(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+    fn misnomer(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
         let [low, high] = scale.displacement_range_m;
         let nothing = NO_GAP * (high - low);
         let mut gaps = ci95.iter().take(2);
@@ -137,7 +137,7 @@ mod tests {
     fn a_stop_without_a_gap_is_in_doubt() {
         let scale = SiteScale::plain(1e-3, 0.1, 100.0);
         let range = scale.displacement_range_m[1] - scale.displacement_range_m[0];
-        let of = |upper: [f64; 2]| EndStop.doubt(&[upper, [5e-4, 6e-4], [1e4, 2e4]], &scale);
+        let of = |upper: [f64; 2]| EndStop.misnomer(&[upper, [5e-4, 6e-4], [1e4, 2e4]], &scale);
         assert!(of([0.0, 1e-3 * range]).is_some());
         // A wide interval that holds zero says nothing about the gap; one away from zero says that there is one.
         assert!(of([0.0, 0.1 * range]).is_none());
