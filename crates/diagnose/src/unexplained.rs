@@ -228,7 +228,6 @@ fn three_leave(answer: &Answer, gap: &Gap) -> bool {
         && answer.names_more_than_parameters()
         && exceeds(left_of_both(answer, gap), &THREE_LEAVE)
         && gap.closed < 1.0 - THREE_MISS
-        && !answer.follows_anew
         && !names_sampling(answer)
 }
 

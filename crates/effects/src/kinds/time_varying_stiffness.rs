@@ -23,6 +23,8 @@ struct Law {
     phase: f64,
 }
 
+/// Part of a period in a record below which a stiffness does not swing: it is off, or drifts.
+const LEAST_SWING: f64 = 0.01;
 /// Half periods in a record that a sweep goes up to.
 const SWEPT: usize = 256;
 
@@ -126,6 +128,10 @@ impl Effect for TimeVaryingStiffness {
             omega: TAU * values[1],
             phase: values[2],
         }))
+    }
+
+    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+        values[1] * scale.duration_s >= LEAST_SWING
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
