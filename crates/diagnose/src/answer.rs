@@ -38,9 +38,15 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
         Status::Parameters
     };
     let mut description = Vec::new();
-    if unexplained(train, answer, gap, status) {
+    if let Some(why) = unexplained(train, answer, gap, status) {
         status = Status::Unknown;
         description = describe_rest(train, answer);
+        if !answer.set.effects().is_empty() {
+            let nearest = crate::pipeline::names(answer.set.effects());
+            description.push(format!(
+                "the nearest of the catalogue, {nearest}, is not believed: {why}"
+            ));
+        }
     }
     Verdict {
         status,
@@ -101,22 +107,14 @@ fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
             (None, None) => continue,
         };
         if let Ok(path) = simulator.path(run, initial, &place) {
+            let across = match &place {
+                Location::Mass(mass) => format!("of {mass}"),
+                place => place.to_string(),
+            };
             let left = &answer.nominal.discrepancy[0][c];
             let rate = 1.0 / run.time_step_s;
-            sentences.extend(describe(
-                &output.channel,
-                left,
-                &path,
-                &place.to_string(),
-                rate,
-            ));
+            sentences.extend(describe(&output.channel, left, &path, &across, rate));
         }
-    }
-    if !answer.set.effects().is_empty() {
-        sentences.push(format!(
-            "the nearest of the catalogue, {}, leaves most of it",
-            crate::pipeline::names(answer.set.effects())
-        ));
     }
     sentences
 }

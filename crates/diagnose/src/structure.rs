@@ -7,7 +7,8 @@ use simgap_simulate::MemberPath;
 /// A correlation of the discrepancy with the motion above this is worth a sentence.
 const VISIBLE: f64 = 0.3;
 
-/// Sentences on the discrepancy of one channel over the motion across one place.
+/// Sentences on the discrepancy of one channel over the motion across one place ("of mold", "between mold and
+/// ground").
 pub(crate) fn describe(
     channel: &str,
     discrepancy: &[f64],
@@ -17,9 +18,9 @@ pub(crate) fn describe(
 ) -> Vec<String> {
     let mut sentences = Vec::new();
     let shapes: [(&str, Vec<f64>); 5] = [
-        ("displacement", path.displacement.clone()),
-        ("velocity", path.velocity.clone()),
-        ("acceleration", path.acceleration.clone()),
+        ("the displacement", path.displacement.clone()),
+        ("the velocity", path.velocity.clone()),
+        ("the acceleration", path.acceleration.clone()),
         (
             "the size of the displacement",
             path.displacement.iter().map(|d| d.abs()).collect(),
@@ -33,7 +34,7 @@ pub(crate) fn describe(
         let correlation = correlation(discrepancy, shape);
         if correlation.abs() > VISIBLE {
             sentences.push(format!(
-                "the discrepancy of {channel} follows {name} at {place} (correlation {correlation:.2})"
+                "the discrepancy of {channel} follows {name} {place} (correlation {correlation:.2})"
             ));
         }
     }

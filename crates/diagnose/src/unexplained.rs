@@ -67,21 +67,62 @@ pub(crate) const NOTHING_BUT_NOISE: f64 = 1.1;
 /// The same where samples are lost or stored in steps: no model says which, and the noise is known less well.
 const NOTHING_BUT_EVENTS: f64 = 1.3;
 
+/// Why the set is not believed to explain the records; `None` where it is.
+pub(crate) fn unexplained(
+    train: &Problem,
+    answer: &Answer,
+    gap: &Gap,
+    status: Status,
+) -> Option<&'static str> {
+    type Rule<'a> = (&'a dyn Fn() -> bool, &'static str);
+    let rules: [Rule<'_>; 10] = [
+        (
+            &|| imitation(answer, gap),
+            "several laws that leave as much imitate another one",
+        ),
+        (
+            &|| bent(answer, gap),
+            "a parameter of its place would be off by more than anyone is in error about it",
+        ),
+        (
+            &|| another_law(answer, gap),
+            "a law of another shape at its place explains much of what it leaves",
+        ),
+        (
+            &|| leaves_of_both(answer, gap),
+            "it leaves more than noise of every record, and much of the gap",
+        ),
+        (
+            &|| three_leave(answer, gap),
+            "so many effects would explain all there is, and something is left",
+        ),
+        (
+            &|| leaves_manifold(answer, gap),
+            "it leaves many times the noise of every record",
+        ),
+        (
+            &|| is_poor_stand_in(answer, gap) && !answer.follows_anew,
+            "it may stand in for another law, and leaves too much for that",
+        ),
+        (
+            &|| is_of_no_use(answer, gap, status),
+            "on the check records it does hardly better than parameters alone",
+        ),
+        (
+            &|| on_every_channel(train, answer.named(), &answer.estimate.intervals),
+            "what is the same on every channel lies before the sensors",
+        ),
+        (
+            &|| stands_out(train, answer, gap, status),
+            "it leaves too much of the gap",
+        ),
+    ];
+    let rules = || rules.iter().find(|(applies, _)| applies());
+    misnamed(answer).or_else(|| rules().map(|(_, why)| *why))
+}
+
 /// Whether structure well above the noise is left that the set does not explain.
-pub(crate) fn unexplained(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
-    if is_misnamed(answer)
-        || imitation(answer, gap)
-        || bent(answer, gap)
-        || another_law(answer, gap)
-        || leaves_of_both(answer, gap)
-        || three_leave(answer, gap)
-        || leaves_manifold(answer, gap)
-        || is_poor_stand_in(answer, gap) && !answer.follows_anew
-        || is_of_no_use(answer, gap, status)
-        || on_every_channel(train, answer.named(), &answer.estimate.intervals)
-    {
-        return true;
-    }
+fn stands_out(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
     // What remains must stand out of the noise, and not be a trifle of the motion itself.
     if gap.corrected < STANDS_OUT * gap.noise_floor || gap.corrected < TRIFLE {
         return false;
@@ -165,10 +206,10 @@ fn names(answer: &Answer, family: Family) -> bool {
     named.any(|placed| placed.effect.family() == family)
 }
 
-/// Whether the values of a named effect belie its name: it is another law, which was not found by its own.
-fn is_misnamed(answer: &Answer) -> bool {
+/// Why the values of a named effect belie its name: it is another law, which was not found by its own.
+fn misnamed(answer: &Answer) -> Option<&'static str> {
     let mut each = 0..answer.judged.len();
-    each.any(|i| misnomer(answer, i).is_some())
+    each.find_map(|i| misnomer(answer, i))
 }
 
 /// Whether several forces and dynamics together leave more than true ones would: a law that the

@@ -148,11 +148,12 @@ fn verify_a_law_is_not_made_of_a_spring_that_is_gone() {
 fn verify_a_damper_that_is_off_is_no_asymmetry() {
     let truth = [placed("damping_error", ground(), &[1.3])];
     let outcome = diagnosed(&truth, &["damping_error"]);
-    let named = named(&outcome);
-    assert!(
-        named.iter().all(|(kind, _)| kind != "asymmetric_damping"),
-        "{named:?}"
-    );
+    let verdict = &outcome.diagnosis.verdict;
+    assert_eq!(verdict.status, Status::Unknown, "{verdict:?}");
+    assert!(verdict.effects.is_empty());
+    let told = verdict.description.iter();
+    let why = told.filter(|sentence| sentence.contains("one damping would do"));
+    assert_eq!(why.count(), 1, "{:?}", verdict.description);
 }
 
 /// What comes late on every channel by the same time was late before the sensors. Where nothing before them is

@@ -87,7 +87,7 @@ pub(super) fn look(trace: &Trace, time_step_s: f64, motion: Option<&MemberPath>)
     };
     look.sentences = sentences(&look);
     if let (Some(path), true) = (motion, about_mean > 0.0) {
-        let place = format!("the measured {}", trace.channel);
+        let place = format!("of the measured {}", trace.channel);
         let more = crate::structure::describe(&trace.channel, &discrepancy, path, &place, rate);
         look.sentences.extend(more);
     }

@@ -109,7 +109,7 @@ impl Effect for AsymmetricDamping {
         // Where only the two together are known badly, wide intervals overlap however far they are apart.
         let is_one = apart < ONE_DAMPING * middles[0].abs().max(middles[1].abs());
         (is_one && low <= other_high && other_low <= high).then_some(
-            "its two dampings are the same but for their intervals: one damping would do",
+            "one damping would do in the place of its two, which are the same but for their intervals",
         )
     }
 
