@@ -44,7 +44,7 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
         if !answer.set.effects().is_empty() {
             let nearest = crate::pipeline::names(answer.set.effects());
             description.push(format!(
-                "the nearest of the catalogue, {nearest}, is not believed: {why}"
+                "the nearest of the catalogue, {nearest}, cannot be believed: {why}"
             ));
         }
     }

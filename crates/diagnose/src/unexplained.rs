@@ -6,6 +6,7 @@ use simgap_estimate::Problem;
 
 use crate::common_cause::on_every_channel;
 use crate::diagnosis::{Gap, Status};
+use crate::evidence::is_nominal;
 use crate::gap::{closed, total};
 use crate::hypothesis::{Hypothesis, name};
 use crate::pipeline::Answer;
@@ -42,9 +43,9 @@ const STAND_IN_STANDS_OUT: f64 = 1.2;
 const TWO_STAND_OUT: f64 = 1.03;
 /// What may be left, as a multiple of the noise, beside a parameter that is off by more than it is known to.
 const BENT_STANDS_OUT: f64 = 1.1;
-/// A parameter that is off by more than this factor beside a law of its place is not wrong, but gone (or not the
-/// model's at all), whatever is left.
-const GONE: f64 = 10.0;
+/// A spring or a mass of less than this share of its value, beside a law of its place, is not wrong, but gone, whatever
+/// is left.
+const GONE: f64 = 0.01;
 /// What a set may leave, over the noise, of the records it was fitted to, and of the check records, in pairs: true
 /// effects leave less of one of the two on tuning cases, or close nearly all of the gap.
 const LEAVES_OF_BOTH: [[f64; 2]; 2] = [[1.08, 1.3], [1.4, 1.2]];
@@ -73,24 +74,24 @@ pub(crate) fn unexplained(
     answer: &Answer,
     gap: &Gap,
     status: Status,
-) -> Option<&'static str> {
+) -> Option<String> {
     type Rule<'a> = (&'a dyn Fn() -> bool, &'static str);
     let rules: [Rule<'_>; 10] = [
         (
             &|| imitation(answer, gap),
-            "several laws that leave as much imitate another one",
+            "several that leave so much imitate a law of another kind",
         ),
         (
             &|| bent(answer, gap),
-            "a parameter of its place would be off by more than anyone is in error about it",
+            "a spring or a mass of the same place would be off by more than anyone is in error about it",
         ),
         (
             &|| another_law(answer, gap),
-            "a law of another shape at its place explains much of what it leaves",
+            "a law of another shape explains much of what is left",
         ),
         (
             &|| leaves_of_both(answer, gap),
-            "it leaves more than noise of every record, and much of the gap",
+            "it leaves more than noise of all records, and more than 3 % of the gap",
         ),
         (
             &|| three_leave(answer, gap),
@@ -98,7 +99,7 @@ pub(crate) fn unexplained(
         ),
         (
             &|| leaves_manifold(answer, gap),
-            "it leaves many times the noise of every record",
+            "it leaves many times the noise of all records",
         ),
         (
             &|| is_poor_stand_in(answer, gap) && !answer.follows_anew,
@@ -118,7 +119,7 @@ pub(crate) fn unexplained(
         ),
     ];
     let rules = || rules.iter().find(|(applies, _)| applies());
-    misnamed(answer).or_else(|| rules().map(|(_, why)| *why))
+    misnamed(answer).or_else(|| rules().map(|(_, why)| (*why).to_owned()))
 }
 
 /// Whether structure well above the noise is left that the set does not explain.
@@ -207,9 +208,15 @@ fn names(answer: &Answer, family: Family) -> bool {
 }
 
 /// Why the values of a named effect belie its name: it is another law, which was not found by its own.
-fn misnamed(answer: &Answer) -> Option<&'static str> {
-    let mut each = 0..answer.judged.len();
-    each.find_map(|i| misnomer(answer, i))
+fn misnamed(answer: &Answer) -> Option<String> {
+    let mut each = answer.judged.iter().enumerate();
+    each.find_map(|(i, judged)| {
+        let why = misnomer(answer, i)?;
+        Some(match answer.judged.len() {
+            1 => why.to_owned(),
+            _ => format!("of {}, {why}", name(&judged.placed)),
+        })
+    })
 }
 
 /// Whether several forces and dynamics together leave more than true ones would: a law that the
@@ -233,14 +240,13 @@ fn two_for_one(answer: &Answer, gap: &Gap) -> bool {
 /// Whether a law is named beside a parameter of its place that is off by more than anyone is in error about it, and
 /// something is left, or that is gone: together they imitate a law that the catalogue lacks.
 fn bent(answer: &Answer, gap: &Gap) -> bool {
-    let leaves_noise = gap.corrected <= BENT_STANDS_OUT * gap.noise_floor;
+    let leaves_something = gap.corrected > BENT_STANDS_OUT * gap.noise_floor;
     let is_far = |placed: &&Placed| {
-        let off = placed
-            .values
-            .first()
-            .map_or(0.0, |factor| factor.ln().abs());
+        let found = placed.values.first().copied().unwrap_or(1.0);
         let known = placed.effect.known_to_factor();
-        known.is_some_and(|factor| off > if leaves_noise { GONE.ln() } else { factor.ln() })
+        known.is_some_and(|factor| {
+            found < GONE || leaves_something && found.ln().abs() > factor.ln()
+        })
     };
     let fitted = answer.estimate.estimate.effects.iter();
     let mut far = fitted.filter(is_far);
@@ -263,10 +269,11 @@ fn leaves_of_both(answer: &Answer, gap: &Gap) -> bool {
         && !names_sampling(answer)
 }
 
-/// Whether three or more are named, and something is left of all records that so many should explain.
+/// Whether three or more are named that are no parameters of the model, and something is left of all records that so
+/// many should explain.
 fn three_leave(answer: &Answer, gap: &Gap) -> bool {
-    answer.judged.len() >= 3
-        && answer.names_more_than_parameters()
+    let effects = answer.named().filter(|placed| !is_nominal(placed));
+    effects.count() >= 3
         && exceeds(left_of_both(answer, gap), &THREE_LEAVE)
         && gap.closed < 1.0 - THREE_MISS
         && !names_sampling(answer)
@@ -301,7 +308,7 @@ fn leaves_manifold(answer: &Answer, gap: &Gap) -> bool {
         && !names_sampling(answer)
 }
 
-/// Whether samples are named to be lost, or stored in steps.
+/// Whether a fault of the samples is named: lost, clipped, stored in steps, taken at other times.
 fn names_sampling(answer: &Answer) -> bool {
     let is_sampling = |placed: &Placed| matches!(placed.action(), Action::Sampling(_));
     answer.named().any(is_sampling)

@@ -173,6 +173,8 @@ pub struct SiteScale {
     pub signal_step: f64,
     /// Stiffness of the nominal springs at the site, N/m.
     pub stiffness_n_per_m: f64,
+    /// Whether the model has a spring at the site.
+    pub has_spring: bool,
     /// Mass of the lighter of the masses at the site, kg.
     pub mass_kg: f64,
     /// Strongest lines of what the nominal model leaves (channel sites: of this channel), Hz; zero
@@ -197,6 +199,7 @@ impl SiteScale {
             signal_range: [-1.4, 1.4],
             signal_step: 0.0,
             stiffness_n_per_m: force_n / displacement_m,
+            has_spring: true,
             mass_kg: 1.0,
             lines_hz: [0.0; LINES],
             motion_hz: [0.0; LINES],

@@ -68,6 +68,7 @@ impl Problem {
             } else {
                 force_n / displacement_m
             },
+            has_spring: stiffness > 0.0,
             mass_kg: mass_at(&self.model, at).unwrap_or(1.0),
             lines_hz: self.lines_left(fit, at),
             motion_hz: lines(&[moved.unwrap_or_default()], step),

@@ -107,7 +107,9 @@ impl Effect for EndStop {
         let [low, high] = scale.displacement_range_m;
         let nothing = NO_GAP * (high - low);
         let mut gaps = ci95.iter().take(2);
-        gaps.any(|[least, most]| *least <= 0.0 && *most < nothing)
+        let has_none = gaps.any(|[least, most]| *least <= 0.0 && *most < nothing);
+        // Where the model has no spring, a bumper that is touched at rest has no other name.
+        (has_none && scale.has_spring)
             .then_some("a stop without a gap is a spring that is stiffer on that side")
     }
 
@@ -142,5 +144,11 @@ mod tests {
         // A wide interval that holds zero says nothing about the gap; one away from zero says that there is one.
         assert!(of([0.0, 0.1 * range]).is_none());
         assert!(of([1e-3 * range, 2e-3 * range]).is_none());
+        let free = SiteScale {
+            has_spring: false,
+            ..scale
+        };
+        let bumper = EndStop.misnomer(&[[0.0, 1e-3 * range], [5e-4, 6e-4], [1e4, 2e4]], &free);
+        assert!(bumper.is_none());
     }
 }

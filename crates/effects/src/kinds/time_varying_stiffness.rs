@@ -23,7 +23,7 @@ struct Law {
     phase: f64,
 }
 
-/// Part of a period in a record below which a stiffness does not swing: it is off, or drifts.
+/// Part of a period in what is searched of a record below which a stiffness does not swing: it is off, or drifts.
 const LEAST_SWING: f64 = 0.01;
 /// Half periods in a record that a sweep goes up to.
 const SWEPT: usize = 256;
