@@ -243,6 +243,26 @@ fn verify_the_tutorial_prints_what_it_shows() {
     );
 }
 
+/// The README shows lines of what the demo prints; `...` stands for those between.
+#[test]
+fn verify_the_readme_shows_what_the_demo_prints() {
+    let page = fs::read_to_string(root().join("README.md")).unwrap();
+    let (_, after) = page.split_once("simgap-cli -- demo\n```").unwrap();
+    let block = after.split("```").nth(1).unwrap();
+    let shown = block.lines().skip(1).filter(|line| *line != REST);
+    let printed = Reader::new().run("simgap demo");
+    let mut printed = printed.lines().map(str::trim_end);
+    let mut count = 0;
+    for line in shown {
+        assert!(
+            printed.any(|is| alike(line, is)),
+            "README.md shows {line:?}"
+        );
+        count += 1;
+    }
+    assert!(count >= 4, "{count} lines");
+}
+
 /// What the sentences of the page lean on.
 fn the_sentences_hold(reader: &mut Reader) {
     let mut compared = |simulated: &str| -> serde_json::Value {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Placed, find, same_place};
-use simgap_estimate::{EstimateError, Problem, Weights};
+use simgap_estimate::{EstimateError, Interval, Problem, Weights};
 use simgap_model::Location;
 
 use crate::diagnosis::{
@@ -55,12 +55,18 @@ pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
     }
 }
 
+impl Answer {
+    /// Intervals of the parameters of the i-th effect.
+    pub(crate) fn intervals(&self, i: usize) -> &[Interval] {
+        self.estimate.intervals.get(i).map_or(&[], Vec::as_slice)
+    }
+}
+
 /// The i-th effect of the answer.
 fn named(answer: &Answer, gap: &Gap, i: usize) -> NamedEffect {
     let judged = &answer.judged[i];
     let effect = judged.placed.effect;
-    let intervals = answer.estimate.intervals.get(i).into_iter().flatten();
-    let parameters = effect.parameters().iter().zip(intervals);
+    let parameters = effect.parameters().iter().zip(answer.intervals(i));
     let doubts = doubts(answer, gap, i);
     let mut evidence = sentences(judged);
     if !doubts.is_empty() {

@@ -55,13 +55,12 @@ pub(crate) fn doubts(answer: &Answer, gap: &Gap, i: usize) -> Vec<String> {
             ));
         }
     }
-    let intervals = answer.estimate.intervals.get(i).into_iter().flatten();
-    for (parameter, interval) in placed.effect.parameters().iter().zip(intervals.clone()) {
+    let parameters = placed.effect.parameters().iter();
+    for (parameter, interval) in parameters.zip(answer.intervals(i)) {
         if parameter.neutral.is_none() && !parameter.per_record && is_unseen(interval) {
             doubts.push(format!("these records hardly show its {}", parameter.name));
         }
     }
-    doubts.extend(misnomer(answer, i).map(str::to_owned));
     if let Some(scale) = &judged.scale {
         let own = placed.effect.doubt(&ci95(answer, i), scale);
         doubts.extend(own.map(str::to_owned));
@@ -89,7 +88,7 @@ pub(crate) fn misnomer(answer: &Answer, i: usize) -> Option<&'static str> {
 }
 
 fn ci95(answer: &Answer, i: usize) -> Vec<[f64; 2]> {
-    let intervals = answer.estimate.intervals.get(i).into_iter().flatten();
+    let intervals = answer.intervals(i).iter();
     intervals.map(|interval| interval.ci95).collect()
 }
 

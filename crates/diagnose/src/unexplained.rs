@@ -65,7 +65,7 @@ const LEAVES_MANIFOLD: f64 = 4.0;
 const NO_SMALL_PART: f64 = 0.05;
 /// What leaves less than this multiple of the noise leaves nothing.
 pub(crate) const NOTHING_BUT_NOISE: f64 = 1.1;
-/// The same where samples are lost or stored in steps: no model says which, and the noise is known less well.
+/// The same where the samples are at fault: events have no trend that a fit could follow, and the noise is known less well.
 const NOTHING_BUT_EVENTS: f64 = 1.3;
 
 /// Why the set is not believed to explain the records; `None` where it is.
@@ -118,8 +118,10 @@ pub(crate) fn unexplained(
             "it leaves too much of the gap",
         ),
     ];
-    let rules = || rules.iter().find(|(applies, _)| applies());
-    misnamed(answer).or_else(|| rules().map(|(_, why)| (*why).to_owned()))
+    misnamed(answer).or_else(|| {
+        let (_, why) = rules.iter().find(|(applies, _)| applies())?;
+        Some((*why).to_owned())
+    })
 }
 
 /// Whether structure well above the noise is left that the set does not explain.

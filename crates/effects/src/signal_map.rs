@@ -63,16 +63,32 @@ pub trait SignalMap: Send + Sync {
     }
 }
 
+/// A map that takes every sample at another time: what lies beyond the record is out of its reach.
+pub(crate) trait Retiming: Send + Sync {
+    /// Where on the true signal the i-th sample is taken, in samples.
+    fn position(&self, signal: &Sampled<'_>, i: usize) -> f64;
+}
+
+impl<T: Retiming> SignalMap for T {
+    fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
+        signal.moved(|i| self.position(&signal, i))
+    }
+
+    fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
+        signal.on_record(|i| self.position(&signal, i))
+    }
+}
+
 impl Sampled<'_> {
     /// The values at a position for each sample.
-    pub(crate) fn moved(&self, position: impl Fn(usize) -> f64) -> Vec<f64> {
+    fn moved(&self, position: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..self.values.len())
             .map(|i| self.at(position(i)))
             .collect()
     }
 
     /// The samples whose positions are on the record, see [`SignalMap::reach`].
-    pub(crate) fn on_record(&self, position: impl Fn(usize) -> f64) -> Range<usize> {
+    fn on_record(&self, position: impl Fn(usize) -> f64) -> Range<usize> {
         let len = self.values.len();
         let most = ((MOST_BEYOND * len as f64) as usize).max(FEW.min(len / 10));
         let is_off = |i: &usize| !(0.0..=(len as f64 - 1.0)).contains(&position(*i));

@@ -1,9 +1,7 @@
 //! Every other sample is taken late and the rest early.
 
-use std::ops::Range;
-
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::signal_map::{Sampled, SignalMap};
+use crate::signal_map::{Retiming, Sampled};
 
 /// Every other sample is taken late and the rest early.
 ///
@@ -16,21 +14,11 @@ struct Alternation {
     timing_s: f64,
 }
 
-impl Alternation {
+impl Retiming for Alternation {
     fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
         let shift = self.timing_s / signal.time_step_s;
         let is_even = (signal.first_index + i).is_multiple_of(2);
         i as f64 + if is_even { shift } else { -shift }
-    }
-}
-
-impl SignalMap for Alternation {
-    fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
-        signal.moved(|i| self.position(&signal, i))
-    }
-
-    fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
-        signal.on_record(|i| self.position(&signal, i))
     }
 }
 

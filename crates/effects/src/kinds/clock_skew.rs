@@ -1,9 +1,7 @@
 //! The clock of a channel runs fast or slow.
 
-use std::ops::Range;
-
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::signal_map::{Sampled, SignalMap};
+use crate::signal_map::{Retiming, Sampled};
 
 /// The clock of a channel runs fast or slow against that of the others: its samples come from
 /// later and later, or earlier and earlier.
@@ -23,20 +21,10 @@ const WORST: f64 = 0.05;
 
 struct Skew(f64);
 
-impl Skew {
+impl Retiming for Skew {
     fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
         // A slice of a record begins with the shift that has come together by then.
         i as f64 + self.0 * (signal.first_index + i) as f64
-    }
-}
-
-impl SignalMap for Skew {
-    fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
-        signal.moved(|i| self.position(&signal, i))
-    }
-
-    fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
-        signal.on_record(|i| self.position(&signal, i))
     }
 }
 

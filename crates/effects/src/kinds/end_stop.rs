@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stop_without_a_gap_is_in_doubt() {
+    fn a_stop_without_a_gap_is_misnamed() {
         let scale = SiteScale::plain(1e-3, 0.1, 100.0);
         let range = scale.displacement_range_m[1] - scale.displacement_range_m[0];
         let of = |upper: [f64; 2]| EndStop.misnomer(&[upper, [5e-4, 6e-4], [1e4, 2e4]], &scale);

@@ -1,9 +1,7 @@
 //! A channel arrives late.
 
-use std::ops::Range;
-
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::signal_map::{Sampled, SignalMap};
+use crate::signal_map::{Retiming, Sampled};
 
 /// A channel arrives late.
 ///
@@ -16,19 +14,9 @@ pub(super) struct Delay {
     pub(super) delay_s: f64,
 }
 
-impl Delay {
+impl Retiming for Delay {
     fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
         i as f64 - self.delay_s / signal.time_step_s
-    }
-}
-
-impl SignalMap for Delay {
-    fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
-        signal.moved(|i| self.position(&signal, i))
-    }
-
-    fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
-        signal.on_record(|i| self.position(&signal, i))
     }
 }
 
