@@ -240,7 +240,6 @@ impl Set {
                 for part in [
                     at.displacement,
                     at.velocity,
-                    at.dof_force,
                     at.element_force,
                     &acceleration,
                 ] {
@@ -269,7 +268,6 @@ impl LaneObserver for Paths {
             for part in [
                 at.displacement,
                 at.velocity,
-                at.dof_force,
                 at.element_force,
                 at.acceleration,
             ] {

@@ -1,5 +1,7 @@
 //! Many simulations at once: those of one structure in the lanes of the vector registers.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use simgap_integrate::exact::Excitation;
 use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSet, LaneSnapshot, Pack};
@@ -89,7 +91,8 @@ pub(crate) fn excitation<'a>(
     }
 }
 
-/// Jobs that can share lanes, in their order; those that cannot be run are in no group.
+/// Jobs that can share lanes, those with one drive beside each other; those that cannot be run are
+/// in no group.
 fn groups(jobs: &[Job<'_>], prepared: &[Result<Prepared, SimulateError>]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (i, ready) in prepared.iter().enumerate() {
@@ -115,7 +118,24 @@ fn groups(jobs: &[Job<'_>], prepared: &[Result<Prepared, SimulateError>]) -> Vec
             None => groups.push(vec![i]),
         }
     }
+    for group in &mut groups {
+        by_drive(group, prepared);
+    }
     groups
+}
+
+/// Puts jobs with one drive beside each other, the drives in the order of their first jobs: lanes
+/// that are driven alike are filled at once.
+fn by_drive(group: &mut [usize], prepared: &[Result<Prepared, SimulateError>]) {
+    let drive = |i: usize| {
+        prepared[i]
+            .as_ref()
+            .ok()
+            .map(|ready| Arc::as_ptr(&ready.drive))
+    };
+    let order = group.to_vec();
+    let first = |i: usize| order.iter().position(|&j| drive(j) == drive(i));
+    group.sort_by_key(|&i| first(i));
 }
 
 /// Marches the jobs of a pack; signals before the maps of the outputs, job by job.

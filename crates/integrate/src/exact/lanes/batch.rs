@@ -2,9 +2,10 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::arithmetic;
 use super::block::Block;
-use super::{LANES, Pack};
+use super::row::{Row, State, copy};
+use super::wide::{Which, Wide};
+use super::{LANES, Mask, Pack};
 use crate::exact::law::Element;
 use crate::exact::march::Excitation;
 use crate::exact::plant::Plant;
@@ -95,8 +96,6 @@ pub struct LaneSnapshot<'a> {
     pub displacement: &'a [Pack],
     /// ẋ, m/s; length n.
     pub velocity: &'a [Pack],
-    /// Force on each degree of freedom, nonlinear forces included, N; length n.
-    pub dof_force: &'a [Pack],
     /// ẍ, m/s²; length n where [`LaneObserver::needs_acceleration`], else empty.
     pub acceleration: &'a [Pack],
     /// Force each element carries, N.
@@ -133,43 +132,72 @@ impl<'a> Batch<'a> {
 
     /// Marches every set from its initial state through its excitation.
     pub fn march(&self, observer: &mut impl LaneObserver) {
-        let (arch, count) = (Arch::new(), self.sample_count);
+        let arch = Arch::new();
         for (i, sets) in self.sets.chunks(LANES).enumerate() {
-            let lanes = &mut Lanes::new(arch, sets, i * LANES);
+            let lanes = Lanes::new(arch, sets, i * LANES, self.sample_count);
             match sets[0].propagator.dof_count {
-                1 => arch.dispatch(March::<1, _>(lanes, count, observer)),
-                2 => arch.dispatch(March::<2, _>(lanes, count, observer)),
-                3 => arch.dispatch(March::<3, _>(lanes, count, observer)),
-                4 => arch.dispatch(March::<4, _>(lanes, count, observer)),
-                _ => arch.dispatch(March::<0, _>(lanes, count, observer)),
+                1 => arch.dispatch(March(lanes, [Pack::ZERO; 1], &mut *observer)),
+                2 => arch.dispatch(March(lanes, [Pack::ZERO; 2], &mut *observer)),
+                3 => arch.dispatch(March(lanes, [Pack::ZERO; 3], &mut *observer)),
+                4 => arch.dispatch(March(lanes, [Pack::ZERO; 4], &mut *observer)),
+                n => arch.dispatch(March(lanes, vec![Pack::ZERO; n], &mut *observer)),
             }
         }
     }
 }
 
-/// A sample of eight excitations.
-struct At<'a> {
-    sample: usize,
-    counts: &'a [usize; LANES],
-    shared: bool,
+/// An excitation and the lanes it drives.
+struct Source<'a> {
+    excitation: Excitation<'a>,
+    /// Samples it holds in full.
+    count: usize,
+    lanes: Mask,
 }
 
-impl At<'_> {
-    /// Takes a part of the excitations, `width` values a sample.
-    #[inline(always)]
-    fn fill<'e>(&self, width: usize, out: &mut [Pack], values: impl Fn(usize) -> &'e [f64]) {
-        if self.shared {
-            let row = row(values(0), self.sample, self.counts[0], width);
-            for (out, value) in out.iter_mut().zip(row) {
-                *out = Pack([*value; LANES]);
-            }
-            return;
-        }
-        for l in 0..LANES {
-            let row = row(values(l), self.sample, self.counts[l], width);
-            for (out, value) in out.iter_mut().zip(row) {
-                out.0[l] = *value;
-            }
+/// The different excitations of eight sets.
+fn sources<'a>(sets: &[&LaneSet<'a>; LANES]) -> Vec<Source<'a>> {
+    let same = |a: &[f64], b: &[f64]| std::ptr::eq(a, b);
+    let mut sources: Vec<Source<'a>> = Vec::new();
+    for (lane, set) in sets.iter().enumerate() {
+        let (e, count) = (&set.excitation, set.sample_count());
+        let known = sources.iter().position(|source| {
+            source.count == count
+                && same(source.excitation.dof_force, e.dof_force)
+                && same(source.excitation.base_displacement, e.base_displacement)
+                && same(source.excitation.base_velocity, e.base_velocity)
+        });
+        let index = known.unwrap_or_else(|| {
+            sources.push(Source {
+                excitation: *e,
+                count,
+                lanes: Mask::NONE,
+            });
+            sources.len() - 1
+        });
+        sources[index].lanes.0[lane] = u64::MAX;
+    }
+    sources
+}
+
+/// Takes a part of the excitations at a sample, one value for each pack.
+#[inline(always)]
+fn fill<'a, S: Simd>(
+    simd: S,
+    sources: &[Source<'a>],
+    sample: usize,
+    out: &mut [Pack],
+    values: impl Fn(&Excitation<'a>) -> &'a [f64],
+) {
+    for (k, source) in sources.iter().enumerate() {
+        let row = row(values(&source.excitation), sample, source.count, out.len());
+        let lanes = Which::of(simd, &source.lanes);
+        for (out, value) in out.iter_mut().zip(row) {
+            let value = Wide::splat(simd, *value);
+            *out = if k == 0 {
+                value.pack()
+            } else {
+                lanes.choose(value, Wide::of(simd, out)).pack()
+            };
         }
     }
 }
@@ -186,172 +214,178 @@ struct Lanes<'a> {
     block: Block<'a>,
     first_set: usize,
     set_count: usize,
-    excitations: [Excitation<'a>; LANES],
-    counts: [usize; LANES],
-    /// Whether all lanes have one excitation.
-    shared: bool,
-    /// Forces at the samples before and after a step.
-    force: [Vec<Pack>; 2],
-    /// Displacements, then velocities of the bases at these samples.
-    base: [Vec<Pack>; 2],
-    carried: Vec<Pack>,
-    acceleration: Vec<Pack>,
+    sample_count: usize,
+    sets: [LaneSet<'a>; LANES],
+    sources: Vec<Source<'a>>,
 }
 
 impl<'a> Lanes<'a> {
-    fn new(arch: Arch, sets: &[LaneSet<'a>], first_set: usize) -> Lanes<'a> {
+    fn new(arch: Arch, sets: &[LaneSet<'a>], first_set: usize, sample_count: usize) -> Lanes<'a> {
         let lanes: [&LaneSet<'a>; LANES] = std::array::from_fn(|l| sets.get(l).unwrap_or(&sets[0]));
-        let one = &lanes[0].excitation;
-        let same = |a: &[f64], b: &[f64]| std::ptr::eq(a, b);
-        let n = lanes[0].propagator.dof_count;
         Lanes {
             block: Block::new(arch, &lanes),
             first_set,
             set_count: sets.len(),
-            excitations: lanes.map(|set| set.excitation),
-            counts: lanes.map(LaneSet::sample_count),
-            shared: lanes.iter().all(|set| {
-                let e = &set.excitation;
-                same(e.dof_force, one.dof_force)
-                    && same(e.base_displacement, one.base_displacement)
-                    && same(e.base_velocity, one.base_velocity)
-            }),
-            force: [vec![Pack::ZERO; n], vec![Pack::ZERO; n]],
-            base: [(); 2].map(|()| vec![Pack::ZERO; 2 * one.base_count]),
-            carried: vec![Pack::ZERO; lanes[0].elements.len()],
-            acceleration: vec![Pack::ZERO; n],
+            sample_count,
+            sources: sources(&lanes),
+            sets: lanes.map(|set| *set),
         }
+    }
+
+    /// The state at the first sample.
+    fn start<R: Row>(&self, zero: &R) -> State<R> {
+        let put = |row: &mut R, values: &dyn Fn(usize) -> &'a [f64]| {
+            for (i, pack) in row.packs_mut().iter_mut().enumerate() {
+                *pack = Pack::of(|l| values(l).get(i).copied().unwrap_or(0.0));
+            }
+        };
+        let mut state = State {
+            displacement: zero.clone(),
+            velocity: zero.clone(),
+        };
+        put(&mut state.displacement, &|l| self.sets[l].displacement);
+        put(&mut state.velocity, &|l| self.sets[l].velocity);
+        state
     }
 
     /// Takes the excitation at a sample; a set that is over stays at its last.
     #[inline(always)]
-    fn load(&mut self, n: usize, sample: usize) {
-        let bases = self.base[0].len() / 2;
-        // Copied, not swapped: the next loads would wait for the pointers.
-        let [before, after] = &mut self.force;
-        before[..n].copy_from_slice(&after[..n]);
-        if bases > 0 {
-            let [before, after] = &mut self.base;
-            before.copy_from_slice(after);
-        }
-        let at = At {
-            sample,
-            counts: &self.counts,
-            shared: self.shared,
-        };
-        at.fill(n, &mut self.force[1][..n], |l| {
-            self.excitations[l].dof_force
-        });
-        if bases > 0 {
-            let (x, v) = self.base[1].split_at_mut(bases);
-            at.fill(bases, x, |l| self.excitations[l].base_displacement);
-            at.fill(bases, v, |l| self.excitations[l].base_velocity);
-        }
-    }
-
-    /// Puts the excitation at two shares of the sample interval in place.
-    #[inline(always)]
-    fn interpolate<S: Simd>(&mut self, simd: S, n: usize, start: f64, end: f64) {
-        let [from, to] = [&self.force[0][..n], &self.force[1][..n]];
-        between(simd, from, to, start, &mut self.block.before[..n]);
-        between(simd, from, to, end, &mut self.block.after[..n]);
-        let [from, to] = &self.base;
-        between(simd, from, to, end, &mut self.block.base);
-    }
-
-    /// Puts the excitation at both ends of the sample interval in place.
-    #[inline(always)]
-    fn take_whole(&mut self, n: usize) {
-        self.block.before[..n].copy_from_slice(&self.force[0][..n]);
-        self.block.after[..n].copy_from_slice(&self.force[1][..n]);
-        if !self.base[1].is_empty() {
-            self.block.base.copy_from_slice(&self.base[1]);
+    fn load<S: Simd, R: Row>(&self, simd: S, sample: usize, force: &mut R, base: &mut [Pack]) {
+        let sources = &self.sources;
+        fill(simd, sources, sample, force.packs_mut(), |e| e.dof_force);
+        if !base.is_empty() {
+            let (x, v) = base.split_at_mut(base.len() / 2);
+            fill(simd, sources, sample, x, |e| e.base_displacement);
+            fill(simd, sources, sample, v, |e| e.base_velocity);
         }
     }
 }
 
+/// `from + share (to − from)`, to the last bit `to` at its end.
 #[inline(always)]
 fn between<S: Simd>(simd: S, from: &[Pack], to: &[Pack], share: f64, out: &mut [Pack]) {
     for ((out, a), b) in out.iter_mut().zip(from).zip(to) {
         *out = if share == 1.0 {
             *b
         } else {
-            arithmetic::between(simd, a, b, share)
+            let (a, b) = (Wide::of(simd, a), Wide::of(simd, b));
+            (a + Wide::splat(simd, share) * (b - a)).pack()
         };
     }
 }
 
-/// [`march`] in the best instructions there are; a closure would not be inlined into them.
-struct March<'a, 'b, const N: usize, O>(&'a mut Lanes<'b>, usize, &'a mut O);
+/// The march of a block in the best instructions there are; a closure would not be inlined into
+/// them. The row is one of zeros.
+struct March<'a, 'b, R, O>(Lanes<'b>, R, &'a mut O);
 
-impl<const N: usize, O: LaneObserver> WithSimd for March<'_, '_, N, O> {
+impl<R: Row, O: LaneObserver> WithSimd for March<'_, '_, R, O> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        march::<N, S>(simd, self.0, self.1, self.2);
+        march(simd, self.0, self.1, self.2);
     }
 }
 
-/// `N` is the number of degrees of freedom, zero where the compiler does not know it.
 #[inline(always)]
-fn march<const N: usize, S: Simd>(
+fn march<S: Simd, R: Row>(
     simd: S,
-    lanes: &mut Lanes<'_>,
-    sample_count: usize,
+    mut lanes: Lanes<'_>,
+    zero: R,
     observer: &mut impl LaneObserver,
 ) {
-    let substeps = lanes.excitations[0].substeps.max(1);
+    let excitation = &lanes.sets[0].excitation;
+    let (substeps, bases) = (excitation.substeps.max(1), excitation.base_count);
     let share = 1.0 / substeps as f64;
-    let n = if N == 0 { lanes.force[0].len() } else { N };
-    for sample in 0..sample_count {
-        lanes.load(n, sample);
-        for sub in 0..if sample == 0 { 0 } else { substeps } {
-            if substeps == 1 {
-                lanes.take_whole(n);
-            } else {
-                let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
-                lanes.interpolate(simd, n, start, end);
-            }
-            let steps = (sample - 1) * substeps + sub + 1;
-            lanes.block.step(simd, n, steps);
+    let mut state = lanes.start(&zero);
+    let mut next = state.clone();
+    let (mut from, mut to) = (zero.clone(), zero.clone());
+    let (mut before, mut after) = (zero.clone(), zero.clone());
+    let [mut base_from, mut base_to, mut base] = [(); 3].map(|()| vec![Pack::ZERO; 2 * bases]);
+    let mut seen = Seen::new(&lanes, &zero);
+    for sample in 0..lanes.sample_count {
+        copy(&mut from, &to);
+        if bases > 0 {
+            base_from.copy_from_slice(&base_to);
         }
-        observe(simd, n, lanes, sample, observer);
+        lanes.load(simd, sample, &mut to, &mut base_to);
+        for sub in 0..if sample == 0 { 0 } else { substeps } {
+            let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
+            let steps = (sample - 1) * substeps + sub + 1;
+            if substeps == 1 {
+                let forces = [&mut from, &mut to];
+                lanes
+                    .block
+                    .step(simd, [&mut state, &mut next], forces, &base_to, steps);
+            } else {
+                between(simd, from.packs(), to.packs(), start, before.packs_mut());
+                between(simd, from.packs(), to.packs(), end, after.packs_mut());
+                between(simd, &base_from, &base_to, end, &mut base);
+                let forces = [&mut before, &mut after];
+                lanes
+                    .block
+                    .step(simd, [&mut state, &mut next], forces, &base, steps);
+            }
+        }
+        seen.show(simd, &lanes, sample, &state, (&to, &base_to), observer);
     }
 }
 
-#[inline(always)]
-fn observe<S: Simd>(
-    simd: S,
-    n: usize,
-    lanes: &mut Lanes<'_>,
-    sample: usize,
-    observer: &mut impl LaneObserver,
-) {
-    let block = &mut lanes.block;
-    block.after[..n].copy_from_slice(&lanes.force[1][..n]);
-    block.load(simd, n, &mut lanes.carried);
-    let (displacement, velocity) = block.state[..2 * n].split_at(n);
-    let (base_displacement, base_velocity) = lanes.base[1].split_at(lanes.base[1].len() / 2);
-    let acceleration = if observer.needs_acceleration() {
-        let at = [displacement, velocity, &block.net];
-        block
-            .kernel
-            .acceleration(simd, n, at, &mut lanes.acceleration);
-        &lanes.acceleration[..]
-    } else {
-        &[]
-    };
-    observer.observe(&LaneSnapshot {
-        first_set: lanes.first_set,
-        set_count: lanes.set_count,
-        sample,
-        displacement,
-        velocity,
-        dof_force: &block.net,
-        acceleration,
-        element_force: &lanes.carried,
-        base_displacement,
-        base_velocity,
-    });
+/// What an observer sees of a sample.
+struct Seen<R> {
+    state: State<R>,
+    net: R,
+    acceleration: R,
+    carried: Vec<Pack>,
+}
+
+impl<R: Row> Seen<R> {
+    fn new(lanes: &Lanes<'_>, zero: &R) -> Seen<R> {
+        Seen {
+            state: lanes.start(zero),
+            net: zero.clone(),
+            acceleration: zero.clone(),
+            carried: vec![Pack::ZERO; lanes.block.elements.len()],
+        }
+    }
+
+    /// Hands a sample with the forces and bases of its excitation to the observer.
+    #[inline(always)]
+    fn show<S: Simd>(
+        &mut self,
+        simd: S,
+        lanes: &Lanes<'_>,
+        sample: usize,
+        state: &State<R>,
+        (force, base): (&R, &[Pack]),
+        observer: &mut impl LaneObserver,
+    ) {
+        // What an observer indexes as it likes is kept in memory; the state need not be.
+        self.state.copy_from(state);
+        lanes.block.carried(simd, &mut self.carried);
+        let needs_acceleration = observer.needs_acceleration();
+        if needs_acceleration {
+            copy(&mut self.net, force);
+            lanes.block.load(simd, &self.carried, &mut self.net);
+            let kernel = &lanes.block.kernel;
+            kernel.acceleration(simd, state, &self.net, &mut self.acceleration);
+        }
+        let (base_displacement, base_velocity) = base.split_at(base.len() / 2);
+        let acceleration = self.acceleration.packs();
+        observer.observe(&LaneSnapshot {
+            first_set: lanes.first_set,
+            set_count: lanes.set_count,
+            sample,
+            displacement: self.state.displacement.packs(),
+            velocity: self.state.velocity.packs(),
+            acceleration: if needs_acceleration {
+                acceleration
+            } else {
+                &[]
+            },
+            element_force: &self.carried,
+            base_displacement,
+            base_velocity,
+        });
+    }
 }

@@ -3,10 +3,11 @@
 use pulp::{Arch, Simd};
 use simgap_model::Node;
 
-use super::arithmetic::{add, add_product, either, mul, sub};
 use super::batch::LaneSet;
 use super::kernel::LaneKernel;
 use super::law::{ElementLanes, LaneLaw, OneByOne};
+use super::row::{Row, State, change, entry};
+use super::wide::{Which, Wide};
 use super::{LANES, Mask, Pack};
 use crate::exact::law::ForceLaw;
 use crate::exact::plant::{Plant, SWEEPS};
@@ -23,14 +24,6 @@ pub(super) struct Block<'a> {
     sweeps: usize,
     any_dry: bool,
     any_memory: bool,
-    pub(super) state: Vec<Pack>,
-    next: Vec<Pack>,
-    /// Forces on the degrees of freedom at the two ends of a step.
-    pub(super) before: Vec<Pack>,
-    pub(super) after: Vec<Pack>,
-    pub(super) net: Vec<Pack>,
-    /// Displacements, then velocities of the bases at the end of a step.
-    pub(super) base: Vec<Pack>,
     free: Vec<[Pack; 2]>,
     step_s: Pack,
     start_s: Pack,
@@ -41,40 +34,40 @@ pub(super) struct Block<'a> {
 fn at(node: Node, values: &[Pack], bases: &[Pack]) -> Pack {
     match node {
         Node::Ground => Pack::ZERO,
-        Node::Dof(i) => values[i],
+        Node::Dof(i) => entry(values, i),
         Node::Base(i) => bases[i],
     }
 }
 
 #[inline(always)]
 fn across<S: Simd>(simd: S, [a, b]: [Node; 2], values: &[Pack], bases: &[Pack]) -> Pack {
-    sub(simd, &at(a, values, bases), &at(b, values, bases))
+    let of_node = |node| Wide::of(simd, &at(node, values, bases));
+    (of_node(a) - of_node(b)).pack()
 }
 
 /// Adds what a force between two nodes does to the degrees of freedom.
 #[inline(always)]
 fn spread<S: Simd>(simd: S, [a, b]: [Node; 2], force: &Pack, dof_force: &mut [Pack]) {
+    let force = Wide::of(simd, force);
     if let Node::Dof(i) = a {
-        dof_force[i] = sub(simd, &dof_force[i], force);
+        change(dof_force, i, |f| (Wide::of(simd, f) - force).pack());
     }
     if let Node::Dof(i) = b {
-        dof_force[i] = add(simd, &dof_force[i], force);
+        change(dof_force, i, |f| (Wide::of(simd, f) + force).pack());
     }
 }
 
 /// `value − (a b + c d)`.
 #[inline(always)]
 fn less_products<S: Simd>(simd: S, value: &Pack, first: [&Pack; 2], second: [&Pack; 2]) -> Pack {
-    let products = add_product(simd, &mul(simd, first[0], first[1]), second[0], second[1]);
-    sub(simd, value, &products)
+    let product = |[a, b]: [&Pack; 2]| Wide::of(simd, a) * Wide::of(simd, b);
+    (Wide::of(simd, value) - (product(first) + product(second))).pack()
 }
 
 impl<'a> Block<'a> {
     /// The sets at their first sample.
     pub(super) fn new(arch: Arch, sets: &[&LaneSet<'a>; LANES]) -> Block<'a> {
-        let n = sets[0].propagator.dof_count;
         let m = sets[0].elements.len();
-        let bases = sets[0].excitation.base_count;
         let plants = sets.map(LaneSet::begin);
         let of_plants = |value: &dyn Fn(&Plant<'_>) -> f64| Pack::of(|l| value(&plants[l]));
         let fold = |part: usize| -> Vec<Pack> {
@@ -111,16 +104,6 @@ impl<'a> Block<'a> {
                 .lanes(&peers)
                 .unwrap_or_else(|| Box::new(OneByOne(peers)))
         };
-        let state = |i: usize| {
-            Pack::of(|l| {
-                let (values, i) = if i < n {
-                    (sets[l].displacement, i)
-                } else {
-                    (sets[l].velocity, i - n)
-                };
-                values.get(i).copied().unwrap_or(0.0)
-            })
-        };
         Block {
             arch,
             kernel: LaneKernel::new(&sets.map(|set| set.propagator)),
@@ -135,66 +118,65 @@ impl<'a> Block<'a> {
             },
             any_dry: plants[0].dry.contains(&true),
             any_memory: plants[0].remembers.contains(&true),
-            state: (0..2 * n).map(state).collect(),
-            next: vec![Pack::ZERO; 2 * n],
-            before: vec![Pack::ZERO; n],
-            after: vec![Pack::ZERO; n],
-            net: vec![Pack::ZERO; n],
-            base: vec![Pack::ZERO; 2 * bases],
             free: vec![[Pack::ZERO; 2]; m],
             step_s: Pack::of(|l| sets[l].propagator.time_step_s),
             start_s: Pack::of(|l| sets[l].excitation.start_s),
         }
     }
 
-    /// One step, with the forces at its two ends and the bases at its end in place; `steps` counts
-    /// from the first sample.
+    /// One step under the forces at its two ends, with the bases where they are at its end;
+    /// `steps` counts from the first sample. The state after it takes the place of the first; the
+    /// first of the forces is used up.
     #[inline(always)]
-    pub(super) fn step<S: Simd>(&mut self, simd: S, n: usize, steps: usize) {
+    pub(super) fn step<S: Simd, R: Row>(
+        &mut self,
+        simd: S,
+        [state, next]: [&mut State<R>; 2],
+        [before, after]: [&mut R; 2],
+        base: &[Pack],
+        steps: usize,
+    ) {
         for (element, &nodes) in self.elements.iter().zip(&self.nodes) {
-            spread(simd, nodes, &element.smooth, &mut self.before);
+            spread(simd, nodes, &element.smooth, before.packs_mut());
         }
-        let from = [&self.state[..], &self.before, &self.after];
-        self.kernel.step(simd, n, from, &mut self.next);
+        let forces = [before.packs(), after.packs()];
+        self.kernel.step(simd, state, forces, next);
         if !self.elements.is_empty() {
-            self.solve(simd, n, steps as f64);
-            self.push(simd, n);
+            self.solve(simd, next, base, steps as f64);
+            self.push(simd, before, next);
         }
-        // Copied, not swapped: the next loads would wait for the pointers.
-        self.state[..2 * n].copy_from_slice(&self.next[..2 * n]);
+        state.copy_from(next);
     }
 
     /// Forces of the elements at the end of the step.
     #[inline(always)]
-    fn solve<S: Simd>(&mut self, simd: S, n: usize, steps: f64) {
-        let bases = self.base.len() / 2;
-        let time_s = add_product(simd, &self.start_s, &Pack([steps; LANES]), &self.step_s);
-        let (x, v) = self.next[..2 * n].split_at(n);
-        let (base_x, base_v) = self.base.split_at(bases);
-        for (i, element) in self.elements.iter_mut().enumerate() {
-            let free = [
-                across(simd, self.nodes[i], x, base_x),
-                across(simd, self.nodes[i], v, base_v),
-            ];
-            self.free[i] = free;
+    fn solve<S: Simd, R: Row>(&mut self, simd: S, next: &State<R>, base: &[Pack], steps: f64) {
+        let (base_x, base_v) = base.split_at(base.len() / 2);
+        let passed = Wide::splat(simd, steps) * Wide::of(simd, &self.step_s);
+        let time_s = (Wide::of(simd, &self.start_s) + passed).pack();
+        let parts = self.elements.iter_mut().zip(&mut self.free);
+        for ((element, free), &nodes) in parts.zip(&self.nodes) {
+            let displacement = across(simd, nodes, next.displacement.packs(), base_x);
+            let velocity = across(simd, nodes, next.velocity.packs(), base_v);
+            *free = [displacement, velocity];
             element.time_s = time_s;
-            element.free_velocity = free[1];
+            element.free_velocity = velocity;
             element.start_velocity = element.end_velocity;
         }
         let mut open = Mask::ALL;
         for _ in 0..self.sweeps {
-            let mut moved = Mask([0; LANES]);
+            let mut moved = Which::of(simd, &Mask::NONE);
             for i in 0..self.elements.len() {
                 self.prepare(simd, i);
                 let element = &mut self.elements[i];
                 element.open = open;
                 self.laws[i].solve(self.arch, element);
-                moved = either(simd, &moved, &element.open);
+                moved = moved | Which::of(simd, &element.open);
             }
-            open = moved;
-            if !open.any() {
+            if !moved.any() {
                 break;
             }
+            open = moved.mask();
         }
         if self.any_memory {
             self.remember(simd);
@@ -248,30 +230,37 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Adds what the forces of the elements do to the state.
+    /// Adds what the forces of the elements do to the state; `net` is room.
     #[inline(always)]
-    fn push<S: Simd>(&mut self, simd: S, n: usize) {
-        self.net[..n].fill(Pack::ZERO);
+    fn push<S: Simd, R: Row>(&mut self, simd: S, net: &mut R, next: &mut State<R>) {
+        net.packs_mut().fill(Pack::ZERO);
         for (element, &nodes) in self.elements.iter().zip(&self.nodes) {
-            spread(simd, nodes, &element.smooth, &mut self.net);
+            spread(simd, nodes, &element.smooth, net.packs_mut());
         }
-        self.kernel.push_end(simd, n, &self.net, &mut self.next);
+        self.kernel.push_end(simd, net, next);
         if self.any_dry {
-            self.net[..n].fill(Pack::ZERO);
+            net.packs_mut().fill(Pack::ZERO);
             for (element, &nodes) in self.elements.iter().zip(&self.nodes) {
-                spread(simd, nodes, &element.dry_force, &mut self.net);
+                spread(simd, nodes, &element.dry_force, net.packs_mut());
             }
-            self.kernel.push_held(simd, n, &self.net, &mut self.next);
+            self.kernel.push_held(simd, net, next);
         }
     }
 
-    /// Forces on the degrees of freedom at a sample, those of the elements included.
+    /// Forces that the elements carry at a sample.
     #[inline(always)]
-    pub(super) fn load<S: Simd>(&mut self, simd: S, n: usize, carried: &mut [Pack]) {
-        self.net[..n].copy_from_slice(&self.after[..n]);
-        for (i, element) in self.elements.iter().enumerate() {
-            carried[i] = add(simd, &element.smooth, &element.dry_end);
-            spread(simd, self.nodes[i], &carried[i], &mut self.net);
+    pub(super) fn carried<S: Simd>(&self, simd: S, carried: &mut [Pack]) {
+        for (carried, element) in carried.iter_mut().zip(&self.elements) {
+            let smooth = Wide::of(simd, &element.smooth);
+            *carried = (smooth + Wide::of(simd, &element.dry_end)).pack();
+        }
+    }
+
+    /// Adds what these forces do to those on the degrees of freedom.
+    #[inline(always)]
+    pub(super) fn load<S: Simd, R: Row>(&self, simd: S, carried: &[Pack], net: &mut R) {
+        for (carried, &nodes) in carried.iter().zip(&self.nodes) {
+            spread(simd, nodes, carried, net.packs_mut());
         }
     }
 }

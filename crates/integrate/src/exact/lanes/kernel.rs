@@ -2,7 +2,8 @@
 
 use pulp::Simd;
 
-use super::arithmetic::{add, add_product, mul, sub};
+use super::row::{Row, State};
+use super::wide::Wide;
 use super::{LANES, Pack};
 use crate::exact::propagator::ExactPropagator;
 
@@ -15,6 +16,16 @@ pub(super) struct LaneKernel {
     inverse_mass: Vec<Pack>,
     stiffness: Vec<Pack>,
     damping: Vec<Pack>,
+}
+
+/// `sum` and the product of a row of a matrix with a column.
+#[inline(always)]
+fn add_products<S: Simd>(simd: S, sum: Wide<S>, matrix: &[Pack], column: &[Pack]) -> Wide<S> {
+    let mut sum = sum;
+    for (entry, value) in matrix.iter().zip(column) {
+        sum += Wide::of(simd, entry) * Wide::of(simd, value);
+    }
+    sum
 }
 
 impl LaneKernel {
@@ -36,82 +47,83 @@ impl LaneKernel {
         }
     }
 
-    /// The step `z₁ = Φ z₀ + Γ₀ f₀ + Γ₁ f₁`, in the order of the march of one set. `n` is the
-    /// number of degrees of freedom, where possible one that the compiler knows.
+    /// The step `z₁ = Φ z₀ + Γ₀ f₀ + Γ₁ f₁`, in the order of the march of one set.
     #[inline(always)]
-    pub(super) fn step<S: Simd>(
+    pub(super) fn step<S: Simd, R: Row>(
         &self,
         simd: S,
-        n: usize,
-        [state, before, after]: [&[Pack]; 3],
-        next: &mut [Pack],
+        state: &State<R>,
+        [before, after]: [&[Pack]; 2],
+        next: &mut State<R>,
     ) {
-        let (state, next) = (&state[..2 * n], &mut next[..2 * n]);
-        let (before, after) = (&before[..n], &after[..n]);
+        let (x, v) = (state.displacement.packs(), state.velocity.packs());
+        let n = x.len();
         let (gamma0, gamma1) = (&self.gamma0[..2 * n * n], &self.gamma1[..2 * n * n]);
         let phi = &self.phi[..4 * n * n];
-        for i in 0..2 * n {
-            let mut sum = Pack::ZERO;
-            for j in 0..n {
-                sum = add_product(simd, &sum, &gamma0[i * n + j], &before[j]);
+        let halves = [&mut next.displacement, &mut next.velocity];
+        for (half, next) in halves.into_iter().enumerate() {
+            for (k, next) in next.packs_mut().iter_mut().enumerate() {
+                let i = half * n + k;
+                let sum = Wide::zero(simd);
+                let sum = add_products(simd, sum, &gamma0[i * n..(i + 1) * n], before);
+                let sum = add_products(simd, sum, &gamma1[i * n..(i + 1) * n], after);
+                let row = &phi[2 * i * n..2 * (i + 1) * n];
+                let sum = add_products(simd, sum, &row[..n], x);
+                *next = add_products(simd, sum, &row[n..], v).pack();
             }
-            for j in 0..n {
-                sum = add_product(simd, &sum, &gamma1[i * n + j], &after[j]);
-            }
-            for j in 0..2 * n {
-                sum = add_product(simd, &sum, &phi[i * 2 * n + j], &state[j]);
-            }
-            next[i] = sum;
         }
     }
 
     /// Adds Γ₁ f to `next`.
     #[inline(always)]
-    pub(super) fn push_end<S: Simd>(&self, simd: S, n: usize, force: &[Pack], next: &mut [Pack]) {
-        push(simd, n, &self.gamma1, force, next);
+    pub(super) fn push_end<S: Simd, R: Row>(&self, simd: S, force: &R, next: &mut State<R>) {
+        push(simd, &self.gamma1, force, next);
     }
 
     /// Adds (Γ₀ + Γ₁) f to `next`.
     #[inline(always)]
-    pub(super) fn push_held<S: Simd>(&self, simd: S, n: usize, force: &[Pack], next: &mut [Pack]) {
-        push(simd, n, &self.held, force, next);
+    pub(super) fn push_held<S: Simd, R: Row>(&self, simd: S, force: &R, next: &mut State<R>) {
+        push(simd, &self.held, force, next);
     }
 
-    /// Acceleration `M⁻¹ (f − C ẋ − K x)`, m/s²; `n` as in [`LaneKernel::step`].
+    /// Acceleration `M⁻¹ (f − C ẋ − K x)`, m/s².
     #[inline(always)]
-    pub(super) fn acceleration<S: Simd>(
+    pub(super) fn acceleration<S: Simd, R: Row>(
         &self,
         simd: S,
-        n: usize,
-        [displacement, velocity, force]: [&[Pack]; 3],
-        acceleration: &mut [Pack],
+        state: &State<R>,
+        force: &R,
+        acceleration: &mut R,
     ) {
-        let (displacement, velocity) = (&displacement[..n], &velocity[..n]);
-        let (force, acceleration) = (&force[..n], &mut acceleration[..n]);
+        let (x, v) = (state.displacement.packs(), state.velocity.packs());
+        let n = x.len();
+        let (force, acceleration) = (force.packs(), acceleration.packs_mut());
         acceleration.fill(Pack::ZERO);
         for j in 0..n {
-            let mut net = force[j];
+            let mut net = Wide::of(simd, &force[j]);
             for k in 0..n {
-                let spring = mul(simd, &self.stiffness[j * n + k], &displacement[k]);
-                let damper = mul(simd, &self.damping[j * n + k], &velocity[k]);
-                net = sub(simd, &net, &add(simd, &spring, &damper));
+                let spring = Wide::of(simd, &self.stiffness[j * n + k]) * Wide::of(simd, &x[k]);
+                let damper = Wide::of(simd, &self.damping[j * n + k]) * Wide::of(simd, &v[k]);
+                net -= spring + damper;
             }
-            for i in 0..n {
-                let mobility = &self.inverse_mass[i * n + j];
-                acceleration[i] = add_product(simd, &acceleration[i], mobility, &net);
+            for (i, out) in acceleration.iter_mut().enumerate() {
+                let mobility = Wide::of(simd, &self.inverse_mass[i * n + j]);
+                *out = (Wide::of(simd, out) + mobility * net).pack();
             }
         }
     }
 }
 
 #[inline(always)]
-fn push<S: Simd>(simd: S, n: usize, gamma: &[Pack], force: &[Pack], next: &mut [Pack]) {
-    let (gamma, force, next) = (&gamma[..2 * n * n], &force[..n], &mut next[..2 * n]);
-    for i in 0..2 * n {
-        let mut sum = next[i];
-        for j in 0..n {
-            sum = add_product(simd, &sum, &gamma[i * n + j], &force[j]);
+fn push<S: Simd, R: Row>(simd: S, gamma: &[Pack], force: &R, next: &mut State<R>) {
+    let n = force.packs().len();
+    let gamma = &gamma[..2 * n * n];
+    let halves = [&mut next.displacement, &mut next.velocity];
+    for (half, next) in halves.into_iter().enumerate() {
+        for (k, next) in next.packs_mut().iter_mut().enumerate() {
+            let i = half * n + k;
+            let row = &gamma[i * n..(i + 1) * n];
+            *next = add_products(simd, Wide::of(simd, next), row, force.packs()).pack();
         }
-        next[i] = sum;
     }
 }

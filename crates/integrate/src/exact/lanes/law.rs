@@ -121,8 +121,8 @@ impl<L: LawLanes> WithSimd for Solve<'_, L> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        solve::solve(self.0, self.1);
+    fn with_simd<S: Simd>(self, simd: S) {
+        solve::solve(simd, self.0, self.1);
     }
 }
 

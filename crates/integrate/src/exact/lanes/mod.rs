@@ -9,12 +9,13 @@
 //! a set's result is the same to the last bit in a batch, whatever its neighbours, and alone,
 //! whatever instructions the processor has.
 
-mod arithmetic;
 mod batch;
 mod block;
 mod kernel;
 mod law;
+mod row;
 mod solve;
+mod wide;
 
 pub use batch::{Batch, LaneObserver, LaneSet, LaneSnapshot};
 pub use law::{ElementLanes, LaneLaw, gather};
@@ -45,15 +46,15 @@ pub(super) struct Mask(pub(super) [u64; LANES]);
 
 impl Mask {
     pub(super) const ALL: Mask = Mask([u64::MAX; LANES]);
+    pub(super) const NONE: Mask = Mask([0; LANES]);
 
     #[inline(always)]
     pub(super) fn any(&self) -> bool {
         self.0.iter().fold(0, |any, lane| any | lane) != 0
     }
-}
 
-/// All bits for true.
-#[inline(always)]
-fn bits(condition: bool) -> u64 {
-    if condition { u64::MAX } else { 0 }
+    #[inline(always)]
+    pub(super) fn all(&self) -> bool {
+        self.0.iter().fold(u64::MAX, |all, lane| all & lane) == u64::MAX
+    }
 }

@@ -1,10 +1,13 @@
 //! Equations (3) and (4) of [`crate::exact::march`] for one element of eight sets.
 //!
-//! The loops over the lanes have no exits, so that they become vector instructions. What they read
-//! is copied first: the compiler then knows that nothing else changes it.
+//! Laws are asked lane by lane, in loops that write down what they say and do nothing else: such
+//! loops become vector instructions. All other arithmetic is [`Wide`].
+
+use pulp::Simd;
 
 use super::law::ElementLanes;
-use super::{LANES, Mask, Pack, bits};
+use super::wide::{Which, Wide};
+use super::{LANES, Pack};
 use crate::exact::law::{Followed, MemberMotion};
 use crate::exact::plant::{AT_REST, FORCE_TOLERANCE, SECANT_STEPS, dry_force};
 
@@ -27,64 +30,77 @@ pub(super) trait LawLanes {
 
 /// Updates S and D of the open sets; those that stayed where they were are closed.
 #[inline(always)]
-pub(super) fn solve(laws: &impl LawLanes, element: &mut ElementLanes) {
-    let (mut displacement, mut velocity) = (element.displacement, element.velocity);
-    let [_, give_velocity] = element.compliance;
-    let (open, old_smooth, old_dry) = (element.open, element.smooth, element.dry_force);
+pub(super) fn solve<S: Simd>(simd: S, laws: &impl LawLanes, element: &mut ElementLanes) {
+    let (mut displacement, mut velocity) = (
+        Wide::of(simd, &element.displacement),
+        Wide::of(simd, &element.velocity),
+    );
+    let [give, give_velocity] = [0, 1].map(|i| Wide::of(simd, &element.compliance[i]));
+    let open = Which::of(simd, &element.open);
+    let (old_smooth, old_dry) = (
+        Wide::of(simd, &element.smooth),
+        Wide::of(simd, &element.dry_force),
+    );
     let mut dry = old_dry;
     if element.dry {
-        let [dry_give, dry_give_velocity] = element.dry_compliance;
-        let (start, without) = (element.start_velocity, element.free_velocity);
-        let mut end = element.dry_end;
-        for l in 0..LANES {
-            let free = velocity.0[l] - give_velocity.0[l] * old_smooth.0[l];
-            let level = |speed: f64| laws.dry_level(l, speed);
-            // What sticks ends a step at rest but for rounding.
-            let rests = bits(start.0[l].abs() <= AT_REST * without.0[l].abs());
-            let start = choose(rests, 0.0, start.0[l]);
-            let now = dry_force(
-                level,
-                element.dry_end.0[l],
-                start,
-                free,
-                dry_give_velocity.0[l],
-            );
-            dry.0[l] = now.mean;
-            end.0[l] = choose(open.0[l], now.end, end.0[l]);
-            displacement.0[l] -= dry_give.0[l] * now.mean;
-            velocity.0[l] -= dry_give_velocity.0[l] * now.mean;
-        }
-        element.dry_end = end;
+        let free = velocity - give_velocity * old_smooth;
+        let [mean, end] = dry_forces(simd, laws, element, free);
+        let [dry_give, dry_give_velocity] = &element.dry_compliance;
+        dry = mean;
+        displacement -= Wide::of(simd, dry_give) * mean;
+        velocity -= Wide::of(simd, dry_give_velocity) * mean;
+        open.put(end, &mut element.dry_end);
     }
     let own = OwnForce {
+        simd,
         laws,
         remembers: element.remembers,
         without: [displacement, velocity],
-        compliance: element.compliance,
+        compliance: [give, give_velocity],
         time_s: element.time_s,
         memory: element.memory,
         from: element.from,
     };
-    let smooth = smooth_force(&old_smooth, &open, &own);
+    let smooth = smooth_force(old_smooth, open, &own);
+    let mut change = (smooth - old_smooth).abs();
     // As in the march of one set, D alone follows from S.
-    let counts = if element.alone { 0.0 } else { 1.0 };
-    let mut end_velocity = element.end_velocity;
-    for l in 0..LANES {
-        let (s, d) = (smooth.0[l], dry.0[l]);
-        let change = (s - old_smooth.0[l]).abs() + counts * (d - old_dry.0[l]).abs();
-        let settled = change <= FORCE_TOLERANCE * (s.abs() + d.abs());
-        let end = velocity.0[l] - give_velocity.0[l] * s;
-        element.open.0[l] = open.0[l] & !bits(settled);
-        element.smooth.0[l] = choose(open.0[l], s, old_smooth.0[l]);
-        element.dry_force.0[l] = choose(open.0[l], d, old_dry.0[l]);
-        end_velocity.0[l] = choose(open.0[l], end, end_velocity.0[l]);
+    if !element.alone {
+        change += (dry - old_dry).abs();
     }
-    element.end_velocity = end_velocity;
+    let tolerance = Wide::splat(simd, FORCE_TOLERANCE);
+    let settled = change.is_at_most(tolerance * (smooth.abs() + dry.abs()));
+    let end_velocity = velocity - give_velocity * smooth;
+    open.put(end_velocity, &mut element.end_velocity);
+    open.put(smooth, &mut element.smooth);
+    open.put(dry, &mut element.dry_force);
+    element.open = (open & !settled).mask();
 }
 
+/// The mean over the step and the end of the dry force, where the velocity would end at `free`
+/// without it.
 #[inline(always)]
-fn choose(mask: u64, yes: f64, no: f64) -> f64 {
-    if mask != 0 { yes } else { no }
+fn dry_forces<S: Simd>(
+    simd: S,
+    laws: &impl LawLanes,
+    element: &ElementLanes,
+    free: Wide<S>,
+) -> [Wide<S>; 2] {
+    let start = Wide::of(simd, &element.start_velocity);
+    let without = Wide::of(simd, &element.free_velocity);
+    // What sticks ends a step at rest but for rounding.
+    let rests = start
+        .abs()
+        .is_at_most(Wide::splat(simd, AT_REST) * without.abs());
+    let start = rests.choose(Wide::zero(simd), start).pack();
+    let (free, compliance) = (free.pack(), element.dry_compliance[1]);
+    let (mut mean, mut end) = (Pack::ZERO, Pack::ZERO);
+    for l in 0..LANES {
+        let level = |speed: f64| laws.dry_level(l, speed);
+        let before = element.dry_end.0[l];
+        let now = dry_force(level, before, start.0[l], free.0[l], compliance.0[l]);
+        (mean.0[l], end.0[l]) = (now.mean, now.end);
+    }
+    [Wide::of(simd, &mean), Wide::of(simd, &end)]
 }
 
 #[inline(always)]
@@ -101,84 +117,81 @@ fn motion_at(from: &[Pack; 3], lane: usize) -> MemberMotion {
 fn follow(laws: &impl LawLanes, memory: &Pack, from: &[Pack; 3], to: &[Pack; 3]) -> [Pack; 2] {
     let (mut force, mut memory, mut left) = (Pack::ZERO, *memory, Pack([1.0; LANES]));
     loop {
-        let mut ahead = 0;
+        let mut is_ahead = false;
         for l in 0..LANES {
             let (from, to) = (motion_at(from, l), motion_at(to, l));
             let now = laws.follow(l, memory.0[l], left.0[l], from, to);
             (force.0[l], memory.0[l], left.0[l]) = (now.force, now.memory, now.left);
-            ahead |= bits(now.left > 0.0);
+            is_ahead |= now.left > 0.0;
         }
-        if ahead == 0 {
+        if !is_ahead {
             return [force, memory];
         }
     }
 }
 
 /// What an element's own smooth force does to its motion, and the laws make of that.
-struct OwnForce<'a, L> {
+struct OwnForce<'a, S: Simd, L> {
+    simd: S,
     laws: &'a L,
     remembers: bool,
     /// Displacement and velocity without the force.
-    without: [Pack; 2],
-    compliance: [Pack; 2],
+    without: [Wide<S>; 2],
+    compliance: [Wide<S>; 2],
     time_s: Pack,
     memory: Pack,
     from: [Pack; 3],
 }
 
-impl<L: LawLanes> OwnForce<'_, L> {
+impl<S: Simd, L: LawLanes> OwnForce<'_, S, L> {
     /// The force that follows from the force. A closure would not be inlined into vector instructions.
     #[inline(always)]
-    fn of(&self, s: &Pack) -> Pack {
-        let [mut displacement, mut velocity] = self.without;
+    fn of(&self, s: Wide<S>) -> Wide<S> {
+        let [displacement, velocity] = self.without;
         let [give, give_velocity] = self.compliance;
-        for l in 0..LANES {
-            displacement.0[l] -= give.0[l] * s.0[l];
-            velocity.0[l] -= give_velocity.0[l] * s.0[l];
-        }
-        let to = [displacement, velocity, self.time_s];
+        let to = [
+            (displacement - give * s).pack(),
+            (velocity - give_velocity * s).pack(),
+            self.time_s,
+        ];
         if self.remembers {
-            return follow(self.laws, &self.memory, &self.from, &to)[0];
+            let [force, _] = follow(self.laws, &self.memory, &self.from, &to);
+            return Wide::of(self.simd, &force);
         }
         let mut force = Pack::ZERO;
         for l in 0..LANES {
             force.0[l] = self.laws.force(l, motion_at(&to, l));
         }
-        force
+        Wide::of(self.simd, &force)
     }
 }
 
 /// The secant method of the march of one set; a lane that is done keeps its answer.
 #[inline(always)]
-fn smooth_force(guess: &Pack, wanted: &Mask, law: &OwnForce<'_, impl LawLanes>) -> Pack {
-    let mut s0 = *guess;
-    let mut s1 = law.of(&s0);
-    let mut residual0 = Pack::ZERO;
-    let mut open = *wanted;
-    for l in 0..LANES {
-        residual0.0[l] = s1.0[l] - s0.0[l];
-        let close = residual0.0[l].abs() <= FORCE_TOLERANCE * s1.0[l].abs();
-        open.0[l] &= !bits(close);
-    }
+fn smooth_force<S: Simd>(
+    guess: Wide<S>,
+    wanted: Which<S>,
+    law: &OwnForce<'_, S, impl LawLanes>,
+) -> Wide<S> {
+    let tolerance = Wide::splat(law.simd, FORCE_TOLERANCE);
+    let (zero, most) = (Wide::zero(law.simd), Wide::splat(law.simd, f64::MAX));
+    let mut s0 = guess;
+    let mut s1 = law.of(s0);
+    let mut residual0 = s1 - s0;
+    let mut open = wanted & !residual0.abs().is_at_most(tolerance * s1.abs());
     for _ in 0..SECANT_STEPS {
         if !open.any() {
             break;
         }
-        let forces = law.of(&s1);
-        for l in 0..LANES {
-            let (a, b, r0) = (s0.0[l], s1.0[l], residual0.0[l]);
-            let r1 = forces.0[l] - b;
-            let slope = r1 - r0;
-            // `is_finite` looks at the bits, lane after lane.
-            let flat = bits(slope == 0.0) | !bits(slope.abs() < f64::INFINITY);
-            let secant = b - r1 * (b - a) / slope;
-            let next = choose(flat, b + r1, secant);
-            let near = bits(r1 * r1 <= FORCE_TOLERANCE * (secant * r0).abs());
-            let close = bits(r1.abs() <= FORCE_TOLERANCE * next.abs());
-            s1.0[l] = choose(open.0[l], next, b);
-            (s0.0[l], residual0.0[l]) = (b, r1);
-            open.0[l] &= !(flat | near | close);
-        }
+        let residual1 = law.of(s1) - s1;
+        let slope = residual1 - residual0;
+        let flat = slope.equals(zero) | !slope.abs().is_at_most(most);
+        let secant = s1 - residual1 * (s1 - s0) / slope;
+        let next = flat.choose(s1 + residual1, secant);
+        let near = (residual1 * residual1).is_at_most(tolerance * (secant * residual0).abs());
+        let close = residual1.abs().is_at_most(tolerance * next.abs());
+        (s0, residual0, s1) = (s1, residual1, open.choose(next, s1));
+        open = open & !(flat | near | close);
     }
     s1
 }

@@ -1,0 +1,89 @@
+//! Packs of one number for each degree of freedom.
+
+use super::Pack;
+
+/// Packs of one number for each degree of freedom: an array where the compiler knows how many, so
+/// that they stay in registers from step to step.
+pub(super) trait Row: Clone {
+    fn packs(&self) -> &[Pack];
+
+    fn packs_mut(&mut self) -> &mut [Pack];
+}
+
+impl<const N: usize> Row for [Pack; N] {
+    #[inline(always)]
+    fn packs(&self) -> &[Pack] {
+        self
+    }
+
+    #[inline(always)]
+    fn packs_mut(&mut self) -> &mut [Pack] {
+        self
+    }
+}
+
+impl Row for Vec<Pack> {
+    #[inline(always)]
+    fn packs(&self) -> &[Pack] {
+        self
+    }
+
+    #[inline(always)]
+    fn packs_mut(&mut self) -> &mut [Pack] {
+        self
+    }
+}
+
+/// Where eight plants are: x and ẋ.
+#[derive(Clone)]
+pub(super) struct State<R> {
+    pub(super) displacement: R,
+    pub(super) velocity: R,
+}
+
+impl<R: Row> State<R> {
+    /// Takes over `other` without new room.
+    #[inline(always)]
+    pub(super) fn copy_from(&mut self, other: &State<R>) {
+        copy(&mut self.displacement, &other.displacement);
+        copy(&mut self.velocity, &other.velocity);
+    }
+}
+
+/// Takes over a row without new room.
+#[inline(always)]
+pub(super) fn copy<R: Row>(to: &mut R, from: &R) {
+    to.packs_mut().copy_from_slice(from.packs());
+}
+
+/// Longest row whose entries are found by comparing.
+const COMPARED: usize = 4;
+
+/// An entry found by comparing: an index that only the run knows would keep a short row in memory.
+#[inline(always)]
+pub(super) fn entry(row: &[Pack], wanted: usize) -> Pack {
+    if row.len() > COMPARED {
+        return row[wanted];
+    }
+    let mut found = Pack::ZERO;
+    for (i, pack) in row.iter().enumerate() {
+        if i == wanted {
+            found = *pack;
+        }
+    }
+    found
+}
+
+/// Changes an entry, found likewise.
+#[inline(always)]
+pub(super) fn change(row: &mut [Pack], wanted: usize, change: impl Fn(&Pack) -> Pack) {
+    if row.len() > COMPARED {
+        row[wanted] = change(&row[wanted]);
+        return;
+    }
+    for (i, pack) in row.iter_mut().enumerate() {
+        if i == wanted {
+            *pack = change(pack);
+        }
+    }
+}
