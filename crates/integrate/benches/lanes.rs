@@ -1,4 +1,4 @@
-//! One parameter set alone against 8 and 32 in lanes, 60 s at 1 kHz.
+//! One parameter set alone against 1 to 32 in lanes, 60 s at 1 kHz.
 //!
 //! `cargo bench -p simgap-integrate --bench lanes`; the items counted are samples times sets, so
 //! that the throughput is that of one sample of one set.

@@ -1,6 +1,8 @@
 //! Eight sets in lanes give what each gives alone, to the last bit.
 #![allow(clippy::unwrap_used)]
 
+use std::rc::Rc;
+
 use proptest::prelude::*;
 use simgap_integrate::exact::lanes::{Batch, LaneObserver, LaneSet, LaneSnapshot};
 use simgap_integrate::exact::{
@@ -103,7 +105,7 @@ impl ForceLaw for Strides {
             force: memory,
             memory,
             left: if went < way {
-                left * (1.0 - went / way)
+                (left - went / moved.abs()).max(0.0)
             } else {
                 0.0
             },
@@ -120,20 +122,43 @@ impl ForceLaw for Alone {
     }
 }
 
+/// What drives a set, alone or with others.
+struct Drive {
+    force: Vec<f64>,
+    bases: usize,
+    base: [Vec<f64>; 2],
+    samples: usize,
+}
+
+/// Waves on `n` masses and `bases` bases.
+fn drive(n: usize, bases: usize, phase: f64, samples: usize) -> Drive {
+    let wave = |k: usize, w: f64| (w * k as f64 * STEP_S + phase).sin();
+    let waves = |width: usize, size: f64, w: f64| -> Vec<f64> {
+        (0..samples * width)
+            .map(|k| size * wave(k / width, w + (k % width) as f64))
+            .collect()
+    };
+    Drive {
+        force: waves(n, 9.0, 7.0),
+        bases,
+        base: [waves(bases, 0.02, 5.0), waves(bases, 0.1, 4.0)],
+        samples,
+    }
+}
+
 /// One parameter set with what it needs to be marched.
 struct Set {
     propagator: ExactPropagator,
     elements: Vec<Element>,
-    force: Vec<f64>,
-    base: [Vec<f64>; 2],
+    drive: Rc<Drive>,
     start: [Vec<f64>; 2],
     start_s: f64,
 }
 
 const STEP_S: f64 = 0.02;
 
-/// A chain of `n` masses between a moving base and the ground, laws as the digits of `laws` say.
-fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], samples: usize) -> Set {
+/// A chain of `n` masses between moving bases and the ground, laws as the digits of `laws` say.
+fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], drive: &Rc<Drive>) -> Set {
     let number = |i: usize| numbers[i % numbers.len()];
     let chain = |value: f64| {
         faer::Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
@@ -156,7 +181,7 @@ fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], samples: usize) 
     let elements = laws.iter().enumerate().map(|(i, kind)| {
         let (a, b) = match i % 3 {
             0 => (Node::Dof(i % n), Node::Ground),
-            1 => (Node::Dof(0), Node::Base(0)),
+            1 if drive.bases > 0 => (Node::Dof(0), Node::Base(i % drive.bases)),
             _ => (Node::Dof(i % n), Node::Dof((i + 1) % n)),
         };
         let size = 1.0 + 0.5 * number(i + 2);
@@ -184,17 +209,10 @@ fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], samples: usize) 
         };
         Element { a, b, law }
     });
-    let wave = |k: usize, w: f64| (w * k as f64 * STEP_S + number(3)).sin();
     Set {
         propagator: ExactPropagator::new(&structure, STEP_S / substeps as f64).unwrap(),
         elements: elements.collect(),
-        force: (0..samples * n)
-            .map(|k| 9.0 * wave(k / n, 7.0 + (k % n) as f64))
-            .collect(),
-        base: [
-            (0..samples).map(|k| 0.02 * wave(k, 5.0)).collect(),
-            (0..samples).map(|k| 0.1 * wave(k, 4.0)).collect(),
-        ],
+        drive: Rc::clone(drive),
         start: [
             (0..n).map(|i| 0.02 * number(i)).collect(),
             (0..n).map(|i| 0.3 * number(i + 4)).collect(),
@@ -206,11 +224,11 @@ fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], samples: usize) 
 impl Set {
     fn excitation(&self, substeps: usize) -> Excitation<'_> {
         Excitation {
-            dof_force: &self.force,
-            base_displacement: &self.base[0],
-            base_velocity: &self.base[1],
-            base_count: 1,
-            sample_count: self.base[0].len(),
+            dof_force: &self.drive.force,
+            base_displacement: &self.drive.base[0],
+            base_velocity: &self.drive.base[1],
+            base_count: self.drive.bases,
+            sample_count: self.drive.samples,
             start_s: self.start_s,
             substeps,
         }
@@ -279,7 +297,7 @@ impl LaneObserver for Paths {
 
 fn together(sets: &[Set], substeps: usize) -> Vec<Vec<f64>> {
     let lanes = sets.iter().map(|set| set.lanes(substeps)).collect();
-    let counts = sets.iter().map(|set| set.base[0].len()).collect();
+    let counts = sets.iter().map(|set| set.drive.samples).collect();
     let mut paths = Paths(vec![vec![]; sets.len()], counts);
     Batch::new(lanes).unwrap().march(&mut paths);
     paths.0
@@ -290,20 +308,27 @@ fn bits(path: &[f64]) -> Vec<u64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Batches of any size, with any neighbours and lengths, against one set at a time.
+    /// Batches of any size, with any neighbours, of which some share what drives them, against one
+    /// set at a time.
     #[test]
     fn prop_lanes_are_the_sets_to_the_last_bit(
         n in 1_usize..6,
+        bases in 0_usize..3,
         laws in proptest::collection::vec(0_u8..6, 0..4),
         substeps in 1_usize..4,
+        drives in proptest::collection::vec((-1.0_f64..1.0, 0_usize..60), 1..5),
         numbers in proptest::collection::vec(
-            (proptest::collection::vec(-1.0_f64..1.0, 7), 1_usize..60), 1..20),
+            (proptest::collection::vec(-1.0_f64..1.0, 7), 0_usize..4), 1..20),
     ) {
+        let drives: Vec<Rc<Drive>> = drives
+            .iter()
+            .map(|(phase, samples)| Rc::new(drive(n, bases, *phase, *samples)))
+            .collect();
         let sets: Vec<Set> = numbers
             .iter()
-            .map(|(numbers, samples)| set(n, &laws, substeps, numbers, *samples))
+            .map(|(numbers, k)| set(n, &laws, substeps, numbers, &drives[k % drives.len()]))
             .collect();
         for (lanes, set) in together(&sets, substeps).iter().zip(&sets) {
             let alone = set.alone(substeps);

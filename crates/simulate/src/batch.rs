@@ -135,7 +135,7 @@ fn by_drive(group: &mut [usize], prepared: &[Result<Prepared, SimulateError>]) {
     };
     let order = group.to_vec();
     let first = |i: usize| order.iter().position(|&j| drive(j) == drive(i));
-    group.sort_by_key(|&i| first(i));
+    group.sort_by_cached_key(|&i| first(i));
 }
 
 /// Marches the jobs of a pack; signals before the maps of the outputs, job by job.

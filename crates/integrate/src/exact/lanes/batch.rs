@@ -4,8 +4,9 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::block::Block;
 use super::row::{Row, State, copy};
-use super::wide::{Which, Wide};
-use super::{LANES, Mask, Pack};
+use super::source::{Source, fill, sources};
+use super::wide::Wide;
+use super::{LANES, Pack};
 use crate::exact::law::Element;
 use crate::exact::march::Excitation;
 use crate::exact::plant::Plant;
@@ -20,14 +21,14 @@ pub struct LaneSet<'a> {
     pub elements: &'a [Element],
     /// The excitation; sets of one batch may have different ones, of different lengths.
     pub excitation: Excitation<'a>,
-    /// x at the first sample, m.
+    /// x at the first sample, m; length n.
     pub displacement: &'a [f64],
-    /// ẋ at the first sample, m/s.
+    /// ẋ at the first sample, m/s; length n.
     pub velocity: &'a [f64],
 }
 
 impl<'a> LaneSet<'a> {
-    /// Whether two sets can be marched in one batch: the same masses, elements at the same places
+    /// Whether two sets can be marched in one batch: as many degrees of freedom, elements at the same places
     /// that rub and remember alike, the same bases and substeps.
     #[must_use]
     pub fn is_alike(&self, other: &LaneSet<'_>) -> bool {
@@ -48,7 +49,7 @@ impl<'a> LaneSet<'a> {
     }
 
     /// Samples that the excitation holds in full.
-    fn sample_count(&self) -> usize {
+    pub(super) fn sample_count(&self) -> usize {
         let whole = |values: &[f64], width: usize| match width {
             0 => usize::MAX,
             width => values.len() / width,
@@ -144,69 +145,6 @@ impl<'a> Batch<'a> {
             }
         }
     }
-}
-
-/// An excitation and the lanes it drives.
-struct Source<'a> {
-    excitation: Excitation<'a>,
-    /// Samples it holds in full.
-    count: usize,
-    lanes: Mask,
-}
-
-/// The different excitations of eight sets.
-fn sources<'a>(sets: &[&LaneSet<'a>; LANES]) -> Vec<Source<'a>> {
-    let same = |a: &[f64], b: &[f64]| std::ptr::eq(a, b);
-    let mut sources: Vec<Source<'a>> = Vec::new();
-    for (lane, set) in sets.iter().enumerate() {
-        let (e, count) = (&set.excitation, set.sample_count());
-        let known = sources.iter().position(|source| {
-            source.count == count
-                && same(source.excitation.dof_force, e.dof_force)
-                && same(source.excitation.base_displacement, e.base_displacement)
-                && same(source.excitation.base_velocity, e.base_velocity)
-        });
-        let index = known.unwrap_or_else(|| {
-            sources.push(Source {
-                excitation: *e,
-                count,
-                lanes: Mask::NONE,
-            });
-            sources.len() - 1
-        });
-        sources[index].lanes.0[lane] = u64::MAX;
-    }
-    sources
-}
-
-/// Takes a part of the excitations at a sample, one value for each pack.
-#[inline(always)]
-fn fill<'a, S: Simd>(
-    simd: S,
-    sources: &[Source<'a>],
-    sample: usize,
-    out: &mut [Pack],
-    values: impl Fn(&Excitation<'a>) -> &'a [f64],
-) {
-    for (k, source) in sources.iter().enumerate() {
-        let row = row(values(&source.excitation), sample, source.count, out.len());
-        let lanes = Which::of(simd, &source.lanes);
-        for (out, value) in out.iter_mut().zip(row) {
-            let value = Wide::splat(simd, *value);
-            *out = if k == 0 {
-                value.pack()
-            } else {
-                lanes.choose(value, Wide::of(simd, out)).pack()
-            };
-        }
-    }
-}
-
-/// The values at a sample, or at the last where that is over.
-#[inline(always)]
-fn row(values: &[f64], sample: usize, count: usize, width: usize) -> &[f64] {
-    let at = sample.min(count.saturating_sub(1)) * width;
-    values.get(at..at + width).unwrap_or(&[])
 }
 
 /// A block with its excitations.
@@ -312,19 +250,17 @@ fn march<S: Simd, R: Row>(
         for sub in 0..if sample == 0 { 0 } else { substeps } {
             let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
             let steps = (sample - 1) * substeps + sub + 1;
+            let states = [&mut state, &mut next];
+            // Two calls: a choice between references would keep the rows in memory.
             if substeps == 1 {
                 let forces = [&mut from, &mut to];
-                lanes
-                    .block
-                    .step(simd, [&mut state, &mut next], forces, &base_to, steps);
+                lanes.block.step(simd, states, forces, &base_to, steps);
             } else {
                 between(simd, from.packs(), to.packs(), start, before.packs_mut());
                 between(simd, from.packs(), to.packs(), end, after.packs_mut());
                 between(simd, &base_from, &base_to, end, &mut base);
                 let forces = [&mut before, &mut after];
-                lanes
-                    .block
-                    .step(simd, [&mut state, &mut next], forces, &base, steps);
+                lanes.block.step(simd, states, forces, &base, steps);
             }
         }
         seen.show(simd, &lanes, sample, &state, (&to, &base_to), observer);
@@ -342,7 +278,10 @@ struct Seen<R> {
 impl<R: Row> Seen<R> {
     fn new(lanes: &Lanes<'_>, zero: &R) -> Seen<R> {
         Seen {
-            state: lanes.start(zero),
+            state: State {
+                displacement: zero.clone(),
+                velocity: zero.clone(),
+            },
             net: zero.clone(),
             acceleration: zero.clone(),
             carried: vec![Pack::ZERO; lanes.block.elements.len()],
@@ -366,7 +305,7 @@ impl<R: Row> Seen<R> {
         let needs_acceleration = observer.needs_acceleration();
         if needs_acceleration {
             copy(&mut self.net, force);
-            lanes.block.load(simd, &self.carried, &mut self.net);
+            lanes.block.add_to(simd, &self.carried, &mut self.net);
             let kernel = &lanes.block.kernel;
             kernel.acceleration(simd, state, &self.net, &mut self.acceleration);
         }

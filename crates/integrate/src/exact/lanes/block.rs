@@ -125,8 +125,8 @@ impl<'a> Block<'a> {
     }
 
     /// One step under the forces at its two ends, with the bases where they are at its end;
-    /// `steps` counts from the first sample. The state after it takes the place of the first; the
-    /// first of the forces is used up.
+    /// `steps` counts from the first sample. The state after it takes the place of the first,
+    /// the second is room; the first of the forces is used up.
     #[inline(always)]
     pub(super) fn step<S: Simd, R: Row>(
         &mut self,
@@ -258,7 +258,7 @@ impl<'a> Block<'a> {
 
     /// Adds what these forces do to those on the degrees of freedom.
     #[inline(always)]
-    pub(super) fn load<S: Simd, R: Row>(&self, simd: S, carried: &[Pack], net: &mut R) {
+    pub(super) fn add_to<S: Simd, R: Row>(&self, simd: S, carried: &[Pack], net: &mut R) {
         for (carried, &nodes) in carried.iter().zip(&self.nodes) {
             spread(simd, nodes, carried, net.packs_mut());
         }

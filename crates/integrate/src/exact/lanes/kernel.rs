@@ -20,8 +20,7 @@ pub(super) struct LaneKernel {
 
 /// `sum` and the product of a row of a matrix with a column.
 #[inline(always)]
-fn add_products<S: Simd>(simd: S, sum: Wide<S>, matrix: &[Pack], column: &[Pack]) -> Wide<S> {
-    let mut sum = sum;
+fn add_products<S: Simd>(simd: S, mut sum: Wide<S>, matrix: &[Pack], column: &[Pack]) -> Wide<S> {
     for (entry, value) in matrix.iter().zip(column) {
         sum += Wide::of(simd, entry) * Wide::of(simd, value);
     }

@@ -15,6 +15,7 @@ mod kernel;
 mod law;
 mod row;
 mod solve;
+mod source;
 mod wide;
 
 pub use batch::{Batch, LaneObserver, LaneSet, LaneSnapshot};

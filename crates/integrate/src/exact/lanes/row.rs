@@ -56,12 +56,13 @@ pub(super) fn copy<R: Row>(to: &mut R, from: &R) {
     to.packs_mut().copy_from_slice(from.packs());
 }
 
-/// Longest row whose entries are found by comparing.
+/// Longest row whose entries are found by comparing: the longest array that a batch is marched in.
 const COMPARED: usize = 4;
 
 /// An entry found by comparing: an index that only the run knows would keep a short row in memory.
 #[inline(always)]
 pub(super) fn entry(row: &[Pack], wanted: usize) -> Pack {
+    debug_assert!(wanted < row.len());
     if row.len() > COMPARED {
         return row[wanted];
     }
@@ -77,6 +78,7 @@ pub(super) fn entry(row: &[Pack], wanted: usize) -> Pack {
 /// Changes an entry, found likewise.
 #[inline(always)]
 pub(super) fn change(row: &mut [Pack], wanted: usize, change: impl Fn(&Pack) -> Pack) {
+    debug_assert!(wanted < row.len());
     if row.len() > COMPARED {
         row[wanted] = change(&row[wanted]);
         return;

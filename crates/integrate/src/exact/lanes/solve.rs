@@ -1,7 +1,8 @@
 //! Equations (3) and (4) of [`crate::exact::march`] for one element of eight sets.
 //!
-//! Laws are asked lane by lane, in loops that write down what they say and do nothing else: such
-//! loops become vector instructions. All other arithmetic is [`Wide`].
+//! Laws, and [`dry_force`], which is that of the march of one set, are asked lane by lane, in loops that
+//! write down what they say and do nothing else: such loops become vector instructions. All other
+//! arithmetic is [`Wide`].
 
 use pulp::Simd;
 

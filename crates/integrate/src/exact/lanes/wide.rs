@@ -1,6 +1,7 @@
 //! Arithmetic on packs in vector instructions, written with the usual signs.
 //!
-//! Products and sums stay apart, so that they round as those of the march of one set.
+//! [`Pack`] and [`Mask`] are how numbers and lanes are stored, [`Wide`] and [`Which`] how they are
+//! computed with: they carry the token of the instructions. Products and sums stay apart, so that they round as those of the march of one set.
 
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Not, Sub, SubAssign};
 
