@@ -1,8 +1,8 @@
-//! One whole diagnosis, and the screening in it: full catalogue, two masses, two outputs, two records to
-//! learn from and one to judge by, 15 s and 60 s each at 1 kHz.
+//! One whole diagnosis: full catalogue, two masses, two outputs, two records to learn from and one to judge
+//! by, 15 s and 60 s each at 1 kHz.
 //!
 //! `cargo bench -p simgap-diagnose`; from the two lengths is seen how the time grows. The goal is 5 s for
-//! the longer on two cores.
+//! the longer on two cores. Screening and the refinement of one candidate are benchmarks of `simgap-estimate`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 #[path = "../tests/common/mod.rs"]

@@ -10,7 +10,8 @@ use simgap_simulate::{Job, predict_all};
 use crate::fit::{Known, Merit, fit_with, state_scale};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, Signals, linearise};
-use crate::normal::{inner, inner_products, normal_equations};
+use crate::normal::normal_equations;
+use crate::products::{inner, inner_products};
 use crate::reach::Reach;
 use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
 
@@ -42,6 +43,26 @@ pub struct Base<'a> {
 
 /// An instance of a candidate, and the share of its starting values that it is.
 pub(crate) type Trial = (Vec<f64>, f64);
+
+/// Inner products of trials with the sensitivities of the base, with each other and with its discrepancy.
+pub(crate) struct InCommon(Vec<OfRun>);
+
+/// The same in one run.
+struct OfRun {
+    /// The parameter of each sensitivity.
+    rows: Vec<usize>,
+    /// Of each trial (row) with the sensitivities, the trials up to it, and the discrepancy.
+    products: Mat<f64>,
+}
+
+/// A column of C in (1) of [`score`](crate::score()).
+#[derive(Clone, Copy)]
+pub(crate) struct Regressor {
+    /// The trial it is the change of.
+    pub(crate) trial: usize,
+    /// The run in which alone it acts, if not in all.
+    pub(crate) run: Option<usize>,
+}
 
 /// Prepares the score of many effects at one fit.
 ///
@@ -132,9 +153,7 @@ impl Base<'_> {
             let trial = Placed::new(candidate.effect, candidate.at.clone(), values.clone());
             let known = estimate.effects.iter().chain(&estimate.nominal);
             let effects: Vec<Placed> = known.chain([&trial]).cloned().collect();
-            for run in 0..runs {
-                simulators.push(self.problem.simulator(&effects, run)?);
-            }
+            simulators.extend(self.problem.simulators(&effects)?);
         }
         let jobs: Vec<Job<'_>> = simulators
             .iter()
@@ -175,38 +194,56 @@ impl Base<'_> {
         predicted
     }
 
+    /// What trials have in common with the base and with each other: all at once, as the sensitivities of the base are
+    /// larger than any cache.
+    pub(crate) fn in_common(&self, trials: &[Vec<Signals>]) -> InCommon {
+        let of_run = |run: usize| {
+            let trials: Vec<&Signals> = trials.iter().map(|trial| &trial[run]).collect();
+            let nuisance = self.at.columns[run].iter().map(AsRef::as_ref);
+            let rows: Vec<usize> = self.layout.entries(run).take(nuisance.len()).collect();
+            let others: Vec<&Signals> = nuisance
+                .chain(trials.iter().copied())
+                .chain([&self.at.discrepancy[run]])
+                .collect();
+            let (first, last) = (rows.len(), rows.len() + trials.len());
+            let is_wanted = |j: usize, other: usize| other <= first + j || other == last;
+            let products = inner_products(&trials, &others, &self.weights, is_wanted);
+            OfRun { rows, products }
+        };
+        InCommon((0..self.at.discrepancy.len()).map(of_run).collect())
+    }
+
     /// Solves (1) of [`score`](crate::score()): amplitudes and the energy bᵀâ they explain.
-    pub(crate) fn amplitudes(&self, columns: &[Vec<Signals>]) -> Option<(Vec<f64>, f64)> {
+    pub(crate) fn amplitudes(
+        &self,
+        in_common: &InCommon,
+        columns: &[Regressor],
+    ) -> Option<(Vec<f64>, f64)> {
         let (k, len) = (columns.len(), self.layout.len());
         let mut cross = Mat::<f64>::zeros(len, k);
         let mut own = Mat::<f64>::zeros(k, k);
         let mut right = vec![0.0; k];
-        for run in 0..self.at.discrepancy.len() {
-            let trials: Vec<&Signals> = columns.iter().map(|column| &column[run]).collect();
-            let nuisance = self.at.columns[run].iter().map(AsRef::as_ref);
-            let rows: Vec<usize> = self.layout.entries(run).take(nuisance.len()).collect();
-            let discrepancy = [&self.at.discrepancy[run]];
-            let others: Vec<&Signals> = nuisance
-                .chain(trials.iter().copied())
-                .chain(discrepancy)
-                .collect();
-            let (first, last) = (rows.len(), rows.len() + k);
-            let is_wanted = |j: usize, other: usize| other <= first + j || other == last;
-            let products = inner_products(&trials, &others, &self.weights, is_wanted);
-            for j in 0..k {
-                right[j] += products[(j, last)];
+        for (run, OfRun { rows, products }) in in_common.0.iter().enumerate() {
+            let (first, last) = (rows.len(), products.ncols() - 1);
+            let acts = |column: &Regressor| column.run.is_none_or(|only| only == run);
+            let acting = columns
+                .iter()
+                .enumerate()
+                .filter(|(_, column)| acts(column));
+            for (j, &Regressor { trial, .. }) in acting.clone() {
+                right[j] += products[(trial, last)];
                 for (place, &row) in rows.iter().enumerate() {
-                    cross[(row, j)] += products[(j, place)];
+                    cross[(row, j)] += products[(trial, place)];
                 }
-                for i in 0..k {
-                    own[(i, j)] += products[(i.max(j), first + i.min(j))];
+                for (i, &Regressor { trial: other, .. }) in acting.clone() {
+                    own[(i, j)] += products[(trial.max(other), first + trial.min(other))];
                 }
             }
         }
         let projected = self.past_nuisance(&cross);
+        let taken = cross.transpose() * &projected;
         let free = Mat::from_fn(k, k, |i, j| {
-            let taken: f64 = (0..len).map(|l| cross[(l, i)] * projected[(l, j)]).sum();
-            let value = own[(i, j)] - taken;
+            let value = own[(i, j)] - taken[(i, j)];
             if i == j { value * (1.0 + 1e-9) } else { value }
         });
         let keeps = |share: f64| (0..k).all(|i| free[(i, i)] > share * own[(i, i)]);

@@ -21,7 +21,8 @@ use crate::layout::{Freedom, Layout};
 use crate::linearise::{
     Column, Linearised, Probe, Signals, complete, discrepancies_of, probe, reach,
 };
-use crate::normal::{damped_step, dot, normal_equations, variances};
+use crate::normal::{damped_step, normal_equations, variances};
+use crate::products::dot;
 use crate::reach::Reach;
 use crate::{EstimateError, Problem, Start, Weights};
 

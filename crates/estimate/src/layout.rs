@@ -347,6 +347,13 @@ impl Layout {
         &theta[offset..offset + self.state_len]
     }
 
+    /// Every entry of a packed vector that the effects and nominal parameters of a run come from.
+    pub(crate) fn values_in(&self, theta: &[f64], run: usize) -> impl Iterator<Item = f64> {
+        let own = &theta[self.run_offset(run)..][..self.own_len()];
+        let shared = theta[..self.shared_len()].iter();
+        shared.chain(own).copied()
+    }
+
     /// Moves the values of the effects and nominal parameters to the nearest physical ones.
     pub(crate) fn make_physical(&self, theta: &mut [f64]) {
         let start = self.unpack(theta);

@@ -73,6 +73,7 @@ mod linearise;
 mod normal;
 mod outright;
 mod problem;
+mod products;
 mod reach;
 mod score;
 mod site;

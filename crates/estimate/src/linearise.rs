@@ -1,5 +1,6 @@
 //! Residuals and their sensitivities at one point.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -31,54 +32,81 @@ pub(crate) struct Linearised {
     pub(crate) columns: Vec<Vec<Column>>,
 }
 
-/// A run to be simulated with a packed vector.
-struct Point<'a> {
-    theta: Vec<f64>,
+/// A run to be simulated.
+struct Point {
+    simulator: Arc<Simulator>,
     run: usize,
+    initial: Vec<f64>,
     /// Without what moves in steps.
     smooth: bool,
-    layout: &'a Layout,
 }
 
-impl Point<'_> {
-    fn simulator(&self, problem: &Problem) -> Result<Simulator, EstimateError> {
-        let start = self.layout.unpack(&self.theta);
+/// The simulators of packed vectors: one for all that differ in initial states alone.
+struct Simulators<'a> {
+    problem: &'a Problem,
+    layout: &'a Layout,
+    known: HashMap<(Option<usize>, Vec<u64>), Arc<Simulator>>,
+}
+
+impl<'a> Simulators<'a> {
+    fn new(problem: &'a Problem, layout: &'a Layout) -> Simulators<'a> {
+        Simulators {
+            problem,
+            layout,
+            known: HashMap::new(),
+        }
+    }
+
+    /// A run at a packed vector.
+    fn point(&mut self, theta: &[f64], run: usize, smooth: bool) -> Result<Point, EstimateError> {
+        Ok(Point {
+            simulator: self.of(theta, run)?,
+            run,
+            initial: self.layout.state(theta, run).to_vec(),
+            smooth,
+        })
+    }
+
+    fn of(&mut self, theta: &[f64], run: usize) -> Result<Arc<Simulator>, EstimateError> {
+        let values = self.layout.values_in(theta, run).map(f64::to_bits);
+        // What a run has of its own depends on when it was taken.
+        let own = (self.layout.own_len() > 0).then_some(run);
+        let key = (own, values.collect());
+        if let Some(known) = self.known.get(&key) {
+            return Ok(Arc::clone(known));
+        }
+        let start = self.layout.unpack(theta);
         let effects: Vec<_> = start.effects.into_iter().chain(start.nominal).collect();
-        problem.simulator(&effects, self.run)
+        let simulator = Arc::new(self.problem.simulator(&effects, run)?);
+        self.known.insert(key, Arc::clone(&simulator));
+        Ok(simulator)
     }
 }
 
 /// Measured minus predicted at every point, in as many batches as there are threads to march them.
-fn simulate(problem: &Problem, points: &[Point<'_>]) -> Vec<Result<Signals, EstimateError>> {
+fn simulate(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateError>> {
     let share = points.len().div_ceil(rayon::current_num_threads().max(1));
     let batches = points.par_chunks(share.next_multiple_of(LANES).max(LANES));
     batches.flat_map_iter(|few| batch(problem, few)).collect()
 }
 
 /// Measured minus predicted at every point, in one batch.
-fn batch(problem: &Problem, points: &[Point<'_>]) -> Vec<Result<Signals, EstimateError>> {
-    let simulators: Vec<_> = points.iter().map(|p| p.simulator(problem)).collect();
-    let ready = simulators
-        .iter()
+fn batch(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateError>> {
+    let jobs = points.iter().map(|point| Job {
+        simulator: &point.simulator,
+        run: &problem.runs[point.run],
+        initial: &point.initial,
+        smooth: point.smooth,
+    });
+    let predictions = predict_all(&jobs.collect::<Vec<_>>());
+    let subtracted = predictions
+        .into_iter()
         .zip(points)
-        .filter_map(|(simulator, point)| {
-            Some(Job {
-                simulator: simulator.as_ref().ok()?,
-                run: &problem.runs[point.run],
-                initial: point.layout.state(&point.theta, point.run),
-                smooth: point.smooth,
-            })
+        .map(|(predicted, point)| {
+            let measured = &problem.runs[point.run].measured;
+            Ok(subtract(measured, predicted?))
         });
-    let mut predictions = predict_all(&ready.collect::<Vec<_>>()).into_iter();
-    let mut results = Vec::with_capacity(points.len());
-    for (simulator, point) in simulators.into_iter().zip(points) {
-        let predicted = match simulator {
-            Ok(_) => predictions.next().unwrap_or_else(|| Ok(vec![])),
-            Err(error) => Err(error),
-        };
-        results.push(predicted.map(|p| subtract(&problem.runs[point.run].measured, p)));
-    }
-    results
+    subtracted.collect()
 }
 
 /// Measured minus predicted, for every run and channel, at several vectors at once.
@@ -87,32 +115,29 @@ pub(crate) fn discrepancies_of(
     layout: &Layout,
     thetas: &[Vec<f64>],
 ) -> Vec<Result<Vec<Signals>, EstimateError>> {
-    let runs = problem.runs.len();
-    let points: Vec<Point<'_>> = thetas
-        .iter()
-        .flat_map(|theta| {
-            (0..runs).map(|run| Point {
-                theta: theta.clone(),
-                run,
-                smooth: false,
-                layout,
-            })
-        })
-        .collect();
+    let mut simulators = Simulators::new(problem, layout);
+    let mut ready = vec![];
+    let mut points = vec![];
+    for theta in thetas {
+        let of_theta = (0..problem.runs.len()).map(|run| simulators.point(theta, run, false));
+        let of_theta: Result<Vec<Point>, EstimateError> = of_theta.collect();
+        ready.push(of_theta.map(|of_theta| points.extend(of_theta)));
+    }
     let mut signals = simulate(problem, &points).into_iter();
-    thetas
-        .iter()
-        .map(|theta| {
-            let reach = reach(problem, layout, theta);
-            let of_theta = signals.by_ref().take(runs).enumerate();
-            let within = of_theta.map(|(run, signals)| {
-                let mut signals = signals?;
-                reach.keep(run, &mut signals);
-                Ok(signals)
-            });
-            within.collect()
-        })
-        .collect()
+    let of_theta = |(theta, ready): (&Vec<f64>, Result<(), EstimateError>)| {
+        ready?;
+        let reach = reach(problem, layout, theta);
+        let runs = signals.by_ref().take(problem.runs.len()).enumerate();
+        // All are taken, whatever happened to one.
+        let runs: Vec<_> = runs.collect();
+        let within = runs.into_iter().map(|(run, signals)| {
+            let mut signals = signals?;
+            reach.keep(run, &mut signals);
+            Ok(signals)
+        });
+        within.collect()
+    };
+    thetas.iter().zip(ready).map(of_theta).collect()
 }
 
 /// The samples that the effects of a packed vector say anything about.
@@ -207,40 +232,40 @@ fn probe_from(
     known: Option<Probe>,
     wants: impl Fn(usize, usize) -> bool,
 ) -> Result<Probe, EstimateError> {
-    let at = |theta: Vec<f64>, run: usize, smooth: bool| Point {
-        theta,
-        run,
-        smooth,
-        layout,
-    };
+    let mut simulators = Simulators::new(problem, layout);
     let mut parts: Vec<(usize, Part)> = vec![];
     let mut points = vec![];
+    let mut moved = vec![];
+    let mut next = theta.to_vec();
     for run in 0..problem.runs.len() {
-        let whole = at(theta.to_vec(), run, false);
         let entries = layout.entries(run).enumerate();
-        let moved: Vec<(usize, usize)> = entries
+        let wanted: Vec<(usize, usize)> = entries
             .filter(|&(place, entry)| !layout.is_held(entry) && wants(run, place))
             .collect();
+        let whole = simulators.point(theta, run, false)?;
         // What moves in steps is left out at both ends of a difference.
-        let is_stepped = !moved.is_empty() && whole.simulator(problem)?.is_stepped();
+        if !wanted.is_empty() && whole.simulator.is_stepped() {
+            parts.push((run, Part::Smooth));
+            points.push(simulators.point(theta, run, true)?);
+        }
         if known.is_none() {
             parts.push((run, Part::Whole));
             points.push(whole);
         }
-        if is_stepped {
-            parts.push((run, Part::Smooth));
-            points.push(at(theta.to_vec(), run, true));
-        }
-        for (place, entry) in moved {
-            let mut next = theta.to_vec();
+        for (place, entry) in wanted {
             next[entry] += difference(layout, theta, entry);
-            parts.push((run, Part::Moved(place, entry)));
-            points.push(at(next, run, true));
+            match simulators.point(&next, run, true) {
+                Ok(point) => {
+                    parts.push((run, Part::Moved(place, entry)));
+                    points.push(point);
+                }
+                Err(error) => moved.push((run, place, entry, Err(error))),
+            }
+            next[entry] = theta[entry];
         }
     }
     let mut whole = vec![];
     let mut smooth: Vec<Option<Signals>> = problem.runs.iter().map(|_| None).collect();
-    let mut moved = vec![];
     let reach = reach(problem, layout, theta);
     for ((run, part), signals) in parts.into_iter().zip(simulate(problem, &points)) {
         match part {

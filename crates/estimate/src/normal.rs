@@ -2,88 +2,10 @@
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
-use rayon::prelude::*;
 
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Signals};
-
-/// Running sums of a dot product: enough additions that do not wait for each other.
-const SUMS: usize = 32;
-
-/// Σ xᵢ yᵢ, to the last bit the same whatever instructions the processor has.
-pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
-    pulp::Arch::new().dispatch(Dot(x, y))
-}
-
-/// [`dot`] in the best instructions there are.
-struct Dot<'a>(&'a [f64], &'a [f64]);
-
-impl pulp::WithSimd for Dot<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> f64 {
-        let Dot(x, y) = self;
-        let mut sums = [0.0; SUMS];
-        let (xs, ys) = (x.chunks_exact(SUMS), y.chunks_exact(SUMS));
-        let rest = xs.remainder().iter().zip(ys.remainder());
-        let rest: f64 = rest.map(|(p, q)| p * q).sum();
-        for (p, q) in xs.zip(ys) {
-            for k in 0..SUMS {
-                sums[k] += p[k] * q[k];
-            }
-        }
-        sums.iter().sum::<f64>() + rest
-    }
-}
-
-/// Weighted inner product of two sets of signals.
-pub(crate) fn inner(a: &Signals, b: &Signals, weights: &[f64]) -> f64 {
-    a.iter()
-        .zip(b)
-        .zip(weights)
-        .map(|((x, y), w)| w * dot(x, y))
-        .sum()
-}
-
-/// Samples of every signal that are multiplied before the next are looked at: they stay in the cache.
-const BLOCK: usize = 1024;
-
-/// Weighted inner products of each set of signals on the left with each on the right, where wanted; zero elsewhere.
-pub(crate) fn inner_products(
-    left: &[&Signals],
-    right: &[&Signals],
-    weights: &[f64],
-    is_wanted: impl Fn(usize, usize) -> bool,
-) -> Mat<f64> {
-    let lengths = left.iter().flat_map(|signals| signals.iter().map(Vec::len));
-    let len = lengths.max().unwrap_or(0);
-    let all = (0..left.len()).flat_map(|i| (0..right.len()).map(move |j| (i, j)));
-    let cells: Vec<(usize, usize)> = all.filter(|&(i, j)| is_wanted(i, j)).collect();
-    let part = |signal: &Vec<f64>, block: usize| -> std::ops::Range<usize> {
-        let start = (block * BLOCK).min(signal.len());
-        start..(start + BLOCK).min(signal.len())
-    };
-    let of_block = |block: usize| -> Vec<f64> {
-        let product = |&(i, j): &(usize, usize)| {
-            let channels = left[i].iter().zip(right[j]).zip(weights);
-            let product = |((x, y), w): ((&Vec<f64>, &Vec<f64>), &f64)| {
-                w * dot(&x[part(x, block)], &y[part(y, block)])
-            };
-            channels.map(product).sum::<f64>()
-        };
-        cells.iter().map(product).collect()
-    };
-    let blocks = (0..len.div_ceil(BLOCK)).into_par_iter().map(of_block);
-    let mut products = Mat::zeros(left.len(), right.len());
-    // In the order of the blocks, whatever thread they came from.
-    for block in blocks.collect::<Vec<_>>() {
-        for (&(i, j), value) in cells.iter().zip(block) {
-            products[(i, j)] += value;
-        }
-    }
-    products
-}
+use crate::products::inner_products;
 
 /// H = Jᵀ W J + prior, g = Jᵀ W r − prior gradient, in units of the scales.
 pub(crate) fn normal_equations(

@@ -6,8 +6,7 @@
 //! the place of the column C in (1) of [`score`](crate::score()), and all sizes of the effect are taken
 //! in proportion at what the data ask for.
 
-use crate::base::{Base, Trial};
-use crate::linearise::Signals;
+use crate::base::{Base, InCommon, Regressor, Trial};
 use crate::score::{SHAPES_TOGETHER, Score, sized};
 use crate::{Candidate, EstimateError};
 
@@ -24,9 +23,9 @@ pub fn score_outright(
     let mut scores = Vec::with_capacity(points.len());
     for few in points.chunks(SHAPES_TOGETHER) {
         let trials: Vec<Trial> = few.iter().map(|values| (values.clone(), 1.0)).collect();
-        let changes = base.columns(candidate, &trials)?;
-        for (values, change) in few.iter().zip(changes) {
-            scores.extend(base.score_resized(candidate, values, change));
+        let in_common = base.in_common(&base.columns(candidate, &trials)?);
+        for (trial, values) in few.iter().enumerate() {
+            scores.extend(base.score_resized(candidate, values, &in_common, trial));
         }
     }
     scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -39,9 +38,11 @@ impl Base<'_> {
         &self,
         candidate: &Candidate,
         values: &[f64],
-        change: Vec<Signals>,
+        in_common: &InCommon,
+        trial: usize,
     ) -> Option<Score> {
-        let (amplitude, explained) = self.amplitudes(&[change])?;
+        let column = Regressor { trial, run: None };
+        let (amplitude, explained) = self.amplitudes(in_common, &[column])?;
         let mut values = sized(candidate.effect, values, None, amplitude[0]);
         candidate.effect.make_physical(&mut values);
         let is_seen = amplitude[0] > 0.0 && explained.is_finite();

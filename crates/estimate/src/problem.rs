@@ -1,5 +1,7 @@
 //! What is estimated from.
 
+use std::sync::Arc;
+
 use simgap_effects::{Family, Placed, catalogue, sites};
 use simgap_model::{Model, OutputKind};
 use simgap_simulate::{Run, Simulator, substeps_for};
@@ -97,6 +99,24 @@ impl Problem {
         let all = self.given.iter().chain(effects);
         let all: Vec<Placed> = all.map(|placed| placed.in_record(run)).collect();
         Simulator::new(&self.model, &all, self.substeps)
+    }
+
+    /// [`Problem::simulator`] of every run; one for all where no effect has values of a run's own.
+    pub(crate) fn simulators(
+        &self,
+        effects: &[Placed],
+    ) -> Result<Vec<Arc<Simulator>>, EstimateError> {
+        let mut all = self.given.iter().chain(effects);
+        let differ = all.any(|placed| !placed.of_record.is_empty());
+        let mut simulators: Vec<Arc<Simulator>> = Vec::with_capacity(self.runs.len());
+        for run in 0..self.runs.len() {
+            let simulator = match simulators.first() {
+                Some(first) if !differ => Arc::clone(first),
+                _ => Arc::new(self.simulator(effects, run)?),
+            };
+            simulators.push(simulator);
+        }
+        Ok(simulators)
     }
 
     /// Length of an initial state.

@@ -11,11 +11,11 @@
 //! (1) is the score test of the effect, â the size the data ask for and the start of its fit.
 
 use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 
 use simgap_effects::{Clock, Effect, Placed, SiteScale};
 
-use crate::base::{Base, Trial};
-use crate::linearise::Signals;
+use crate::base::{Base, InCommon, Regressor, Trial};
 use crate::{Candidate, EstimateError};
 
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
@@ -59,10 +59,12 @@ pub fn score_shapes(
     let mut scores = Vec::new();
     for few in shapes.chunks(SHAPES_TOGETHER) {
         let wanted: Vec<Vec<Trial>> = few.iter().map(|shape| trials(candidate, shape)).collect();
-        let mut columns = base.columns(candidate, &wanted.concat())?.into_iter();
+        let in_common = base.in_common(&base.columns(candidate, &wanted.concat())?);
+        let mut first = 0;
         for (shape, wanted) in few.iter().zip(wanted) {
-            let own: Vec<Vec<Signals>> = columns.by_ref().take(wanted.len()).collect();
-            scores.extend(base.score_shape(candidate, shape, own));
+            let own = first..first + wanted.len();
+            first = own.end;
+            scores.extend(base.score_shape(candidate, shape, &in_common, own));
         }
     }
     scores.sort_by(|a: &Score, b: &Score| b.gain.total_cmp(&a.gain));
@@ -139,17 +141,27 @@ pub(crate) fn sized(
 }
 
 impl Base<'_> {
-    /// Scores a shape from the columns of its trials.
+    /// Scores a shape from its own trials.
     fn score_shape(
         &self,
         candidate: &Candidate,
         shape: &[f64],
-        columns: Vec<Vec<Signals>>,
+        in_common: &InCommon,
+        own: Range<usize>,
     ) -> Option<Score> {
+        let everywhere = own.clone().map(|trial| Regressor { trial, run: None });
+        let everywhere: Vec<Regressor> = everywhere.collect();
         match way(candidate, shape) {
-            Way::BySize(sizes) => self.score_sizes(candidate, shape, &sizes, &columns),
-            Way::AsItStands => self.score_as_it_stands(candidate, shape, &columns),
-            Way::ByClock(clock) => self.score_clock(candidate, shape, clock, columns),
+            Way::BySize(sizes) => {
+                let solution = self.amplitudes(in_common, &everywhere)?;
+                self.score_sizes(candidate, shape, &sizes, solution)
+            }
+            // Without a size to grow from (a limit): by the whole of what it does.
+            Way::AsItStands => {
+                let (amplitude, energy) = self.amplitudes(in_common, &everywhere)?;
+                (amplitude[0] > 0.0).then(|| self.scored(candidate, shape.to_vec(), energy))
+            }
+            Way::ByClock(clock) => self.score_clock(candidate, shape, clock, in_common, own),
         }
     }
 
@@ -158,10 +170,9 @@ impl Base<'_> {
         candidate: &Candidate,
         shape: &[f64],
         sizes: &[usize],
-        columns: &[Vec<Signals>],
+        (amplitude, energy): (Vec<f64>, f64),
     ) -> Option<Score> {
         let parameters = candidate.effect.parameters();
-        let (amplitude, energy) = self.amplitudes(columns)?;
         let mut values = shape.to_vec();
         let mut absent = false;
         for (&k, a) in sizes.iter().zip(&amplitude) {
@@ -188,47 +199,24 @@ impl Base<'_> {
         }
     }
 
-    /// An effect without a size to grow from (a limit): scored by the whole of what it does.
-    fn score_as_it_stands(
-        &self,
-        candidate: &Candidate,
-        shape: &[f64],
-        columns: &[Vec<Signals>],
-    ) -> Option<Score> {
-        match self.amplitudes(columns) {
-            Some((amplitude, energy)) if amplitude[0] > 0.0 => {
-                Some(self.scored(candidate, shape.to_vec(), energy))
-            }
-            _ => None,
-        }
-    }
-
     /// An effect with a clock: a sine and a cosine of its own for each run.
     fn score_clock(
         &self,
         candidate: &Candidate,
         shape: &[f64],
         clock: Clock,
-        phases: Vec<Vec<Signals>>,
+        in_common: &InCommon,
+        phases: Range<usize>,
     ) -> Option<Score> {
         let runs = self.problem.runs.len();
-        let mut columns = Vec::new();
-        for together in phases {
-            for run in 0..runs {
-                let alone = together.iter().enumerate().map(|(r, signals)| {
-                    let kept = |signal: &Vec<f64>| {
-                        if r == run {
-                            signal.clone()
-                        } else {
-                            vec![0.0; signal.len()]
-                        }
-                    };
-                    signals.iter().map(kept).collect()
-                });
-                columns.push(alone.collect());
-            }
-        }
-        let (parts, energy) = self.amplitudes(&columns)?;
+        let columns = phases.flat_map(|trial| {
+            let of_run = move |run| Regressor {
+                trial,
+                run: Some(run),
+            };
+            (0..runs).map(of_run)
+        });
+        let (parts, energy) = self.amplitudes(in_common, &columns.collect::<Vec<_>>())?;
         let size = |run: usize| parts[run].hypot(parts[runs + run]);
         let mean = ((0..runs).map(|r| size(r).powi(2)).sum::<f64>() / runs as f64).sqrt();
         let mut values = shape.to_vec();

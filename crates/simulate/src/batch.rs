@@ -1,5 +1,6 @@
 //! Many simulations at once: those of one structure in the lanes of the vector registers.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -128,14 +129,14 @@ fn groups(jobs: &[Job<'_>], prepared: &[Result<Prepared, SimulateError>]) -> Vec
 /// that are driven alike are filled at once.
 fn by_drive(group: &mut [usize], prepared: &[Result<Prepared, SimulateError>]) {
     let drive = |i: usize| {
-        prepared[i]
-            .as_ref()
-            .ok()
-            .map(|ready| Arc::as_ptr(&ready.drive))
+        let ready = prepared[i].as_ref().ok();
+        ready.map(|ready| Arc::as_ptr(&ready.drive))
     };
-    let order = group.to_vec();
-    let first = |i: usize| order.iter().position(|&j| drive(j) == drive(i));
-    group.sort_by_cached_key(|&i| first(i));
+    let mut first = HashMap::new();
+    for (place, &i) in group.iter().enumerate() {
+        first.entry(drive(i)).or_insert(place);
+    }
+    group.sort_by_key(|&i| first.get(&drive(i)));
 }
 
 /// Marches the jobs of a pack; signals before the maps of the outputs, job by job.

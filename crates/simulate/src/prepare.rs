@@ -1,5 +1,6 @@
 //! What several simulations share: propagators of the same matrices, drives of the same run.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -22,6 +23,16 @@ pub(crate) struct Prepared {
 pub(crate) struct Workshop<'a> {
     propagators: Vec<(StructuralMatrices, f64, Arc<ExactPropagator>)>,
     drives: Vec<(DriveKey<'a>, Arc<Drive>)>,
+    /// Of a simulator in a run, both told apart by where they are.
+    pairs: HashMap<(*const Simulator, *const Run), Pair>,
+}
+
+/// What simulations of one simulator in one run share.
+#[derive(Clone)]
+struct Pair {
+    stiffness: Arc<Mat<f64>>,
+    propagator: Arc<ExactPropagator>,
+    drive: Arc<Drive>,
 }
 
 impl<'a> Workshop<'a> {
@@ -66,27 +77,39 @@ impl<'a> Workshop<'a> {
         run: &'a Run,
         initial: &[f64],
     ) -> Result<Prepared, SimulateError> {
-        let matrices = simulator.model.tangent_matrices()?;
-        let step = run.time_step_s / simulator.substeps as f64;
-        let propagator = self.propagator(&matrices, step)?;
-        let drive = self.drive(simulator, run)?;
+        let pair = self.pair(simulator, run)?;
         let known = simulator.nominal_dofs;
         let part = |from: usize, k: usize| -> Vec<f64> {
             let value = |i: usize| initial.get(i).copied().unwrap_or(0.0);
             let values: Vec<f64> = (from..from + known).map(value).collect();
             following(
-                &matrices.stiffness_matrix,
+                &pair.stiffness,
                 values,
                 simulator.added.iter().map(|s| s[k]),
             )
         };
-        let (displacement, velocity) = (part(0, 0), part(known, 1));
         Ok(Prepared {
-            propagator,
-            drive,
-            displacement,
-            velocity,
+            displacement: part(0, 0),
+            velocity: part(known, 1),
+            propagator: pair.propagator,
+            drive: pair.drive,
         })
+    }
+
+    fn pair(&mut self, simulator: &'a Simulator, run: &'a Run) -> Result<Pair, SimulateError> {
+        let key = (std::ptr::from_ref(simulator), std::ptr::from_ref(run));
+        if let Some(pair) = self.pairs.get(&key) {
+            return Ok(pair.clone());
+        }
+        let matrices = simulator.model.tangent_matrices()?;
+        let step = run.time_step_s / simulator.substeps as f64;
+        let pair = Pair {
+            propagator: self.propagator(&matrices, step)?,
+            drive: self.drive(simulator, run)?,
+            stiffness: Arc::new(matrices.stiffness_matrix),
+        };
+        self.pairs.insert(key, pair.clone());
+        Ok(pair)
     }
 }
 
