@@ -8,7 +8,7 @@ use simgap_model::Location;
 use crate::diagnosis::{
     CandidateResult, Gap, LocationShare, NamedEffect, NamedParameter, Rival, Status, Verdict,
 };
-use crate::evidence::probabilities;
+use crate::evidence::{is_nominal, probabilities};
 use crate::gap::{predict, total};
 use crate::hypothesis::{Hypothesis, name};
 use crate::pipeline::Answer;
@@ -26,9 +26,13 @@ const MOST_RIVALS: usize = 2;
 const SHOWN: usize = 12;
 
 pub(crate) fn verdict(train: &Problem, answer: &Answer, gap: &Gap) -> Verdict {
-    // What does most comes first.
+    // What does most comes first, and what the model lacks before parameters of it that are off besides.
     let mut order: Vec<usize> = (0..answer.judged.len()).collect();
-    order.sort_by(|&i, &j| answer.judged[j].worth.total_cmp(&answer.judged[i].worth));
+    order.sort_by(|&i, &j| {
+        let [one, other] = [i, j].map(|k| &answer.judged[k]);
+        let by_family = is_nominal(&one.placed).cmp(&is_nominal(&other.placed));
+        by_family.then(other.worth.total_cmp(&one.worth))
+    });
     let effects: Vec<NamedEffect> = order.into_iter().map(|i| named(answer, gap, i)).collect();
     let mut status = if effects.is_empty() {
         Status::None

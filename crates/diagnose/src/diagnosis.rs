@@ -42,6 +42,9 @@ pub struct Gap {
     pub corrected: f64,
     /// What white measurement noise alone would leave.
     pub noise_floor: f64,
+    /// What the noise that is seen on the inputs does besides: even the true model, driven by the inputs as they
+    /// were measured, leaves it.
+    pub input_noise: f64,
     /// 1 − sqrt(max(corrected² − floor², 0) / max(nominal² − floor², tiny)).
     pub closed: f64,
     /// Channel by channel.
@@ -61,6 +64,8 @@ pub struct ChannelGap {
     pub corrected: f64,
     /// As in [`Gap`].
     pub noise_floor: f64,
+    /// As in [`Gap`].
+    pub input_noise: f64,
 }
 
 /// Where the discrepancy of the nominal model lies.

@@ -38,10 +38,17 @@ pub(crate) const SEEN: f64 = 0.5;
 /// Smallest part of the gap of the model as given, rms, that an effect must close in a channel.
 const MATTERS: f64 = 0.015;
 
-/// Whether an effect moves an output by more than a simulation may be off: `larger` has it, `smaller` lacks it.
+/// Whether an effect moves an output by more than a simulation may be off, and by more than what the noise of the
+/// inputs leaves, which has the colour of the plant and is imitated by what does not exist: `larger` has it,
+/// `smaller` lacks it.
 pub(crate) fn relevant(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool {
-    let least = search.problem.output_std().into_iter();
-    moves(larger, smaller, least.map(|std| MOVES * std))
+    let std = search.problem.output_std().into_iter();
+    let least = std.zip(&search.input_noise);
+    moves(
+        larger,
+        smaller,
+        least.map(|(std, driven)| driven.max(MOVES * std)),
+    )
 }
 
 /// The same where `smaller` has a special case of the law in its place.
@@ -160,9 +167,11 @@ pub(crate) fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesi
         0.0
     };
     let std = search.problem.output_std();
-    let off = search.accuracy.iter().zip(std);
+    // A lag that is not there smooths the noise of the inputs on its way to the outputs.
+    let off = search.accuracy.iter().zip(&search.input_noise).zip(std);
+    let off = off.map(|((accuracy, driven), std)| accuracy.max(least * std).hypot(*driven));
     let variances = set.fit.variance.iter().zip(&rival.fit.variance);
-    let mut channels = variances.zip(off.map(|(accuracy, std)| accuracy.max(least * std)));
+    let mut channels = variances.zip(off);
     if channels.all(|((own, its), off)| (own - its).abs().sqrt() < off) {
         let misfit = |set: &Hypothesis| set.fit.objective - pull(&set.fit.estimate);
         rival.evidence += misfit(rival) - misfit(set);

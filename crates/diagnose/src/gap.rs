@@ -121,12 +121,20 @@ pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
     }
 }
 
+/// The gap of the predictions by the model as given, with re-estimated parameters and corrected. `input_noise` is
+/// [what the noise of the inputs does](crate::input_noise), in the units of the channels.
 pub(crate) fn gap(
     check: &Problem,
     nominal: &Prediction,
     recalibrated: &Prediction,
     (effects, corrected): (&[Placed], &Prediction),
+    input_noise: &[f64],
 ) -> Gap {
+    let std = check.output_std();
+    let driven = input_noise.iter().zip(std).map(|(rms, std)| rms / std);
+    let driven: Vec<f64> = driven
+        .map(|rms| if rms.is_finite() { rms } else { 0.0 })
+        .collect();
     let floor = noise_floor(check, effects, corrected);
     let totals = [nominal, recalibrated, corrected].map(|p| total(&p.nrmse));
     let noise = total(&floor);
@@ -136,6 +144,7 @@ pub(crate) fn gap(
         recalibrated: totals[1],
         corrected: totals[2],
         noise_floor: noise,
+        input_noise: total(&driven),
         closed: closed(totals[0], totals[2], noise),
         channels: check
             .model
@@ -148,8 +157,21 @@ pub(crate) fn gap(
                 recalibrated: recalibrated.nrmse[c],
                 corrected: corrected.nrmse[c],
                 noise_floor: floor[c],
+                input_noise: driven[c],
             })
             .collect(),
+    }
+}
+
+impl Gap {
+    /// The same gap over all noise there is, that of the inputs too: what a set is judged by.
+    pub(crate) fn over_all_noise(&self) -> Gap {
+        let noise_floor = self.noise_floor.hypot(self.input_noise);
+        Gap {
+            noise_floor,
+            closed: closed(self.nominal, self.corrected, noise_floor),
+            ..self.clone()
+        }
     }
 }
 

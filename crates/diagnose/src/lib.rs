@@ -72,6 +72,7 @@ mod evidence;
 mod final_fit;
 mod gap;
 mod hypothesis;
+mod input_noise;
 mod jumps;
 mod locate;
 mod out_of_sight;

@@ -14,6 +14,7 @@ use crate::evidence::{independence, is_nominal};
 use crate::final_fit::fit_to_all;
 use crate::gap::{Prediction, gap, predict};
 use crate::hypothesis::{Hypothesis, name, remove, sort};
+use crate::input_noise::input_noise;
 use crate::locate::Located;
 use crate::out_of_sight::{add_rivals_out_of_sight, adjusted};
 use crate::outcome::{corrected_model, series};
@@ -143,15 +144,16 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         .into_par_iter()
         .map(|effects| predict(&check, effects, &plain))
         .collect::<Result<Vec<_>, _>>()?;
+    let driven = input_noise(&check, &recalibrated.estimate.nominal, &plain)?;
     let gap_of = |placed: &[Placed], predictions: &[Prediction]| {
         let corrected = (placed, &predictions[2]);
-        gap(&check, &predictions[0], &predictions[1], corrected)
+        gap(&check, &predictions[0], &predictions[1], corrected, &driven)
     };
     let mut gap = gap_of(&placed, &predictions);
     // What it is judged by.
     let between = |answer: &Answer, placed: &[Placed], predictions: &[Prediction], gap: &Gap| {
         let between = jumps::gap_between(&check, &answer.set, (placed, predictions), gap);
-        between.unwrap_or_else(|| gap.clone())
+        between.as_ref().unwrap_or(gap).over_all_noise()
     };
     let mut judged_by = between(&answer, &placed, &predictions, &gap);
     let harms = |gap: &Gap| gap.corrected > HARMS * gap.recalibrated;
@@ -163,7 +165,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     };
     let anew = if unexplained::has_force(&answer) && fails(&answer) {
         let known = &recalibrated.estimate.nominal;
-        let anew = stretches::gap_followed_anew(&check, known, &placed, &plain);
+        let anew = stretches::gap_followed_anew(&check, known, &placed, &plain, &driven);
         anew.ok().flatten()
     } else {
         None
@@ -188,7 +190,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let (gap, placed, shown) = if left_unknown {
         // Blame nothing: the corrected model is the recalibrated one.
         let nothing = (&nominal_placed[..], &predictions[1]);
-        let gap = crate::gap::gap(&check, &predictions[0], &predictions[1], nothing);
+        let gap = crate::gap::gap(&check, &predictions[0], &predictions[1], nothing, &driven);
         verdict.effects.clear();
         (gap, recalibrated.estimate.nominal.clone(), 1)
     } else {

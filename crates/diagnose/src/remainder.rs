@@ -6,7 +6,7 @@
 //! over   = √(mean_c V_c / N_c)                                           (3)
 //! ```
 //!
-//! V_c is the squared discrepancy of a channel, N_c its white noise, ρ_c the share of its samples
+//! V_c is the squared discrepancy of a channel, N_c its white noise and what the noise of the inputs does to it, ρ_c the share of its samples
 //! that are independent; bᵀâ / rᵀWr is what the free law explains past all that the fit adjusts
 //! (`simgap_estimate::score`). True effects leave noise, which no law explains. An effect that
 //! stands in for a foreign one leaves the difference of the two laws, which the free law of its
@@ -55,6 +55,12 @@ pub(crate) fn remainder(search: &Search<'_>, set: &Hypothesis) -> Result<Remaind
     let noise = noise_variance(&set.fit.discrepancy, &stepped);
     let independence = &search.weights.independence;
     let (mut excess, mut over) = (0.0, 0.0);
+    let driven = search.input_noise.iter().map(|rms| rms * rms);
+    let noise: Vec<f64> = noise
+        .iter()
+        .zip(driven)
+        .map(|(white, driven)| white + driven)
+        .collect();
     for ((left, noise), independence) in set.fit.variance.iter().zip(&noise).zip(independence) {
         let ratio = left.max(f64::MIN_POSITIVE) / noise.max(f64::MIN_POSITIVE);
         excess += independence * (1.0 - ratio.recip()).max(0.0);

@@ -16,6 +16,7 @@ use simgap_model::Location;
 use crate::accuracy::accuracy;
 use crate::evidence::{effective_samples, evidence, freedom};
 use crate::hypothesis::{Hypothesis, add, name, pull, pull_of, replace, same, sort, unique};
+use crate::input_noise::input_noise;
 use crate::out_of_sight::{spring_to_ground, without_limits};
 
 /// Sets of each size that the next size starts from.
@@ -53,6 +54,8 @@ pub(crate) struct Search<'a> {
     pub(crate) gap: Vec<f64>,
     /// How far a simulation of each channel may be off: sets whose predictions differ by less fit alike.
     pub(crate) accuracy: Vec<f64>,
+    /// What the noise of the inputs does to each channel.
+    pub(crate) input_noise: Vec<f64>,
 }
 
 impl<'a> Search<'a> {
@@ -88,6 +91,7 @@ impl<'a> Search<'a> {
             let most = PARAMETERS_APART * left.sqrt();
             given.sqrt().min(std).min(most)
         });
+        let input_noise = input_noise(problem, &baseline.estimate.nominal, &weights)?;
         Ok(Search {
             problem,
             weights,
@@ -95,6 +99,7 @@ impl<'a> Search<'a> {
             effective_samples,
             gap: gap.collect(),
             accuracy: accuracy(problem, baseline)?,
+            input_noise,
         })
     }
 
@@ -111,6 +116,7 @@ impl<'a> Search<'a> {
             effective_samples: self.effective_samples,
             gap: self.gap.clone(),
             accuracy: self.accuracy.clone(),
+            input_noise: self.input_noise.clone(),
         }
     }
 

@@ -102,6 +102,7 @@ impl Search<'_> {
             effective_samples: self.effective_samples,
             gap: self.gap.clone(),
             accuracy: self.accuracy.clone(),
+            input_noise: self.input_noise.clone(),
         })
     }
 }

@@ -29,6 +29,7 @@ pub(crate) fn gap_followed_anew(
     recalibrated: &[Placed],
     corrected: &[Placed],
     weights: &Weights,
+    input_noise: &[f64],
 ) -> Result<Option<Gap>, EstimateError> {
     let cut = check.with_runs(check.runs.iter().flat_map(stretches).collect());
     let predictions = [&[], recalibrated, corrected]
@@ -36,9 +37,9 @@ pub(crate) fn gap_followed_anew(
         .map(|effects| predict(&cut, effects, weights))
         .collect::<Result<Vec<_>, _>>()?;
     let last = (corrected, &predictions[2]);
-    let gap = gap(&cut, &predictions[0], &predictions[1], last);
+    let gap = gap(&cut, &predictions[0], &predictions[1], last, input_noise);
     let between = gap_of_check_between(&cut, (corrected, &predictions), &gap);
-    let follows = follows(between.as_ref().unwrap_or(&gap));
+    let follows = follows(&between.as_ref().unwrap_or(&gap).over_all_noise());
     Ok(Some(gap).filter(|_| follows))
 }
 
@@ -80,6 +81,7 @@ mod tests {
             recalibrated,
             corrected,
             noise_floor,
+            input_noise: 0.0,
             closed: 0.0,
             channels: vec![],
         }

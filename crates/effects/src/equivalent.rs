@@ -27,9 +27,9 @@ pub struct Equivalent {
 /// | `input_delay`, `input_lag` | `sensor_delay`, `sensor_lag` | linear, one input, one output | linear elements in a row commute |
 /// | `harmonic_force` | `tone_pickup` | linear, one output | the steady response is a tone |
 /// | `presliding_friction` | `hysteresis` | the same place | Dahl's law is Bouc and Wen's with n = 1, γ = 0 |
+/// | `end_stop` no harder than three times the spring beside it ([`equivalents_beside`]) | `bilinear_stiffness` | the same place | a soft stop is a spring that is stiffer beyond a point |
 ///
-/// Each row holds in both directions but the last, which needs the more general law to take a
-/// special value. The initial state is unknown to the diagnosis and explains transients.
+/// Each row holds in both directions but the last two, which need a law to take special values. The initial state is unknown to the diagnosis and explains transients.
 ///
 /// ```
 /// use simgap_effects::equivalents;
@@ -109,7 +109,30 @@ pub fn equivalents_beside(effects: &[Placed], i: usize, model: &Model) -> Vec<Eq
             _ => {}
         }
     }
-    equivalents(placed.effect.kind(), &placed.at, &model)
+    let mut same = equivalents(placed.effect.kind(), &placed.at, &model);
+    same.extend(soft_stop(placed, &model));
+    same
+}
+
+/// A contact stiffness above this multiple of that of the spring beside it is a stop, and no spring.
+const SOFT: f64 = 3.0;
+
+/// A stop whose contact is about as soft as the spring of its place.
+fn soft_stop(placed: &Placed, model: &Model) -> Option<Equivalent> {
+    let Location::Between(pair) = &placed.at else {
+        return None;
+    };
+    let beside = model.springs.iter();
+    let beside = beside.filter(|spring| simgap_model::same_pair(&spring.between, pair));
+    let stiffness: f64 = beside.map(|spring| spring.stiffness).sum();
+    let [_, _, contact] = placed.values[..] else {
+        return None;
+    };
+    (placed.effect.kind() == "end_stop" && contact <= SOFT * stiffness).then(|| Equivalent {
+        kind: "bilinear_stiffness",
+        at: placed.at.clone(),
+        because: "a soft stop is a spring that is stiffer beyond a point",
+    })
 }
 
 /// Effects that do the same, and why.

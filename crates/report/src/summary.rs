@@ -60,7 +60,7 @@ impl Styles {
 /// #     schema: "simgap-diagnosis/1",
 /// #     model: "table".into(),
 /// #     gap: Gap { metric: "nrmse", nominal: 0.021, recalibrated: 0.021, corrected: 0.021,
-/// #         noise_floor: 0.020, closed: 0.0, channels: vec![] },
+/// #         noise_floor: 0.020, input_noise: 0.0, closed: 0.0, channels: vec![] },
 /// #     r#where: Where { channels: vec![], locations: vec![], bands: vec![], times: vec![], states: vec![], records: vec![] },
 /// #     verdict: Verdict { status: Status::None, effects: vec![], description: vec![] },
 /// #     remainder: Remains::default(), candidates: vec![], next_experiment: None, notes: vec![],

@@ -144,7 +144,7 @@ pub fn report(input: &ReportInput<'_>) -> Result<Report, ReportError> {
 ///         nominal: 0.021,
 ///         recalibrated: 0.021,
 ///         corrected: 0.021,
-///         noise_floor: 0.020,
+///         noise_floor: 0.020, input_noise: 0.0,
 ///         closed: 0.0,
 ///         channels: vec![],
 ///     },

@@ -42,6 +42,7 @@ fn diagnosis() -> Diagnosis {
             recalibrated: 0.0,
             corrected: 0.0,
             noise_floor: 0.0,
+            input_noise: 0.0,
             closed: 0.0,
             channels: vec![ChannelGap {
                 channel: "y".into(),
@@ -49,6 +50,7 @@ fn diagnosis() -> Diagnosis {
                 recalibrated: 0.0,
                 corrected: 0.0,
                 noise_floor: 1e-4,
+                input_noise: 0.0,
             }],
         },
         r#where: none(),

@@ -100,11 +100,11 @@ pub fn effect() -> Diagnosis {
             nominal: 0.412,
             recalibrated: 0.301,
             corrected: 0.0212,
-            noise_floor: 0.018,
+            noise_floor: 0.018, input_noise: 0.0,
             closed: 0.973,
             channels: vec![
-                ChannelGap { channel: "y1".into(), nominal: 0.47, recalibrated: 0.33, corrected: 0.0215, noise_floor: 0.019 },
-                ChannelGap { channel: "F_cylinder".into(), nominal: 0.34, recalibrated: 0.27, corrected: 0.0209, noise_floor: 0.017 },
+                ChannelGap { channel: "y1".into(), nominal: 0.47, recalibrated: 0.33, corrected: 0.0215, noise_floor: 0.019, input_noise: 0.0 },
+                ChannelGap { channel: "F_cylinder".into(), nominal: 0.34, recalibrated: 0.27, corrected: 0.0209, noise_floor: 0.017, input_noise: 0.0 },
             ],
         },
         r#where: shares(),
@@ -292,6 +292,7 @@ pub fn none() -> Diagnosis {
         recalibrated: 0.0182,
         corrected: 0.0182,
         noise_floor: 0.018,
+        input_noise: 0.0,
         closed: 0.02,
         channels: vec![],
     };
