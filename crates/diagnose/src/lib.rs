@@ -82,6 +82,7 @@ mod pipeline;
 mod remainder;
 mod search;
 mod shooting;
+mod slow;
 mod stand_in;
 mod stretches;
 mod structure;

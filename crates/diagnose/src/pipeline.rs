@@ -310,11 +310,16 @@ fn search(
         [nominal, recalibrated, &baseline],
         request.withheld,
     )?;
-    let base = search.fit(&first)?;
-    let pool = match scope {
+    let mut base = search.fit(&first)?;
+    let mut pool = match scope {
         Scope::Everything => search.run(&base, progress)?,
         Scope::Parameters => vec![],
     };
+    if let Some(weights) = search.passed_over(&pool).map(|set| colour(&set.fit)) {
+        search.reweigh(weights);
+        base = search.fit(&first)?;
+        pool = search.run(&base, progress)?;
+    }
 
     // The finalists, with the colour of the best one's residual.
     progress("finalists");

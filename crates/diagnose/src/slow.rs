@@ -1,0 +1,36 @@
+//! Effects that explain a channel which hardly counts.
+//!
+//! A discrepancy that is slow from end to end of a record is one observation, however many samples it has: the channel
+//! hardly counts, whoever explains it gains little, and the search goes after trifles in other channels. A drift of a
+//! sensor is the plainest case. But what leaves white noise of such a channel has explained every sample of it.
+
+use crate::evidence::independence;
+use crate::hypothesis::Hypothesis;
+use crate::search::Search;
+
+/// Share of independent samples below which a channel hardly counts.
+const SLOW: f64 = 0.02;
+/// The same of what is left above which it is nearly white.
+const WHITE: f64 = 0.1;
+/// What is left of the squared discrepancy of the best set, at the most.
+const LEFT: f64 = 0.25;
+
+impl Search<'_> {
+    /// The set that explains a slow channel where the best one does not: by its colour the channels are weighed aright.
+    pub(crate) fn passed_over<'a>(&self, pool: &'a [Hypothesis]) -> Option<&'a Hypothesis> {
+        let best = &pool.first()?.fit.variance;
+        let worth = |set: &Hypothesis| {
+            let white = independence(&set.fit, best.len());
+            let channels = (0..best.len()).filter(|&c| {
+                self.weights.independence[c] < SLOW
+                    && white[c] > WHITE
+                    && set.fit.variance[c] < LEFT * best[c]
+            });
+            let gains = channels.map(|c| white[c] * (best[c] / set.fit.variance[c]).ln());
+            gains.sum::<f64>()
+        };
+        let worth = pool.iter().map(|set| (set, worth(set)));
+        let most = worth.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
+        Some(most.0).filter(|_| most.1 > 0.0)
+    }
+}
