@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use simgap_effects::{Family, Placed};
-use simgap_estimate::{Candidate, Fit, Start};
+use simgap_estimate::{Candidate, Fit, Score, Start};
 
 use crate::evidence::is_nominal;
 
@@ -126,4 +126,20 @@ pub(crate) fn pull_of(placed: &Placed) -> f64 {
     deviations
         .map(|v| 0.5 * ((v - 1.0) / NOMINAL_PRIOR).powi(2))
         .sum()
+}
+
+/// Score of a nominal parameter that the fit already adjusts under its prior: freed, it gains what
+/// the prior holds back, and about as much again in what it can then explain.
+pub(crate) fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Score> {
+    let placed = base
+        .fit
+        .estimate
+        .nominal
+        .iter()
+        .find(|placed| same(placed, candidate))?;
+    Some(Score {
+        gain: 2.0 * pull_of(placed),
+        share: 0.0,
+        start: placed.clone(),
+    })
 }

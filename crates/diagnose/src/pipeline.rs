@@ -310,16 +310,10 @@ fn search(
         [nominal, recalibrated, &baseline],
         request.withheld,
     )?;
-    let mut base = search.fit(&first)?;
-    let mut pool = match scope {
-        Scope::Everything => search.run(&base, progress)?,
-        Scope::Parameters => vec![],
+    let (base, pool) = match scope {
+        Scope::Everything => search.run_weighed(&first, colour, progress)?,
+        Scope::Parameters => (search.fit(&first)?, vec![]),
     };
-    if let Some(weights) = search.passed_over(&pool).map(|set| colour(&set.fit)) {
-        search.reweigh(weights);
-        base = search.fit(&first)?;
-        pool = search.run(&base, progress)?;
-    }
 
     // The finalists, with the colour of the best one's residual.
     progress("finalists");

@@ -15,7 +15,7 @@ use simgap_model::Location;
 
 use crate::accuracy::accuracy;
 use crate::evidence::{effective_samples, evidence, freedom};
-use crate::hypothesis::{Hypothesis, add, name, pull, pull_of, replace, same, sort, unique};
+use crate::hypothesis::{Hypothesis, add, name, prior_score, pull, replace, sort, unique};
 use crate::input_noise::input_noise;
 use crate::out_of_sight::{spring_to_ground, without_limits};
 
@@ -436,20 +436,4 @@ impl<'a> Search<'a> {
         unique(&mut pool);
         Ok(pool)
     }
-}
-
-/// Score of a nominal parameter that the fit already adjusts under its prior: freed, it gains what
-/// the prior holds back, and about as much again in what it can then explain.
-fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Score> {
-    let placed = base
-        .fit
-        .estimate
-        .nominal
-        .iter()
-        .find(|placed| same(placed, candidate))?;
-    Some(Score {
-        gain: 2.0 * pull_of(placed),
-        share: 0.0,
-        start: placed.clone(),
-    })
 }

@@ -4,6 +4,8 @@
 //! hardly counts, whoever explains it gains little, and the search goes after trifles in other channels. A drift of a
 //! sensor is the plainest case. But what leaves white noise of such a channel has explained every sample of it.
 
+use simgap_estimate::{EstimateError, Fit, Start, Weights};
+
 use crate::evidence::independence;
 use crate::hypothesis::Hypothesis;
 use crate::search::Search;
@@ -16,8 +18,27 @@ const WHITE: f64 = 0.1;
 const LEFT: f64 = 0.25;
 
 impl Search<'_> {
+    /// The set without effects and those that were found, best first; found anew with other weights where the first
+    /// passed something over. `colour` tells the weights by what a fit leaves.
+    pub(crate) fn run_weighed(
+        &mut self,
+        first: &Start,
+        colour: impl Fn(&Fit) -> Weights,
+        step: &(dyn Fn(&str) + Sync),
+    ) -> Result<(Hypothesis, Vec<Hypothesis>), EstimateError> {
+        let base = self.fit(first)?;
+        let pool = self.run(&base, step)?;
+        let Some(found) = self.passed_over(&pool) else {
+            return Ok((base, pool));
+        };
+        self.reweigh(colour(&found.fit));
+        let base = self.fit(first)?;
+        let pool = self.run(&base, step)?;
+        Ok((base, pool))
+    }
+
     /// The set that explains a slow channel where the best one does not: by its colour the channels are weighed aright.
-    pub(crate) fn passed_over<'a>(&self, pool: &'a [Hypothesis]) -> Option<&'a Hypothesis> {
+    fn passed_over<'a>(&self, pool: &'a [Hypothesis]) -> Option<&'a Hypothesis> {
         let best = &pool.first()?.fit.variance;
         let worth = |set: &Hypothesis| {
             let white = independence(&set.fit, best.len());
