@@ -60,8 +60,9 @@ fn framed(looks: &[Look]) -> String {
         )
     };
     let frames: String = looks.iter().map(frame).collect();
+    // Without its encoding told, a browser under load guesses from the part of a file that it has.
     format!(
-        "<!DOCTYPE html><body style=\"margin:0\">{frames}<script>\
+        "<!DOCTYPE html><meta charset=\"utf-8\"><body style=\"margin:0\">{frames}<script>\
          setInterval(() => {{ for (const frame of document.querySelectorAll('iframe')) {{\
          const made = frame.contentDocument?.getElementById('page-check');\
          if (made) frame.nextElementSibling.textContent = made.textContent; }} }}, 50);</script></body>"
