@@ -3,7 +3,7 @@
 //! A simulation is no better than what is known of its inputs, and a record no better than its noise: sets that
 //! differ by less are told by the number of their parameters, or by how far they take the nominal ones.
 
-use simgap_effects::{Placed, same_place};
+use simgap_effects::{Action, Placed, same_place};
 use simgap_estimate::{EstimateError, Fit, Interval, fit_initial_states};
 
 use crate::evidence::{evidence, is_nominal};
@@ -40,15 +40,22 @@ const MATTERS: f64 = 0.015;
 
 /// Whether an effect moves an output by more than a simulation may be off, and by more than what the noise of the
 /// inputs leaves, which has the colour of the plant and is imitated by what does not exist: `larger` has it,
-/// `smaller` lacks it.
+/// `smaller` lacks it. A fault of the samples has no such colour.
 pub(crate) fn relevant(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool {
     let std = search.problem.output_std().into_iter();
-    let least = std.zip(&search.input_noise);
-    moves(
-        larger,
-        smaller,
-        least.map(|(std, driven)| driven.max(MOVES * std)),
-    )
+    let of_samples = faults_of_samples(larger) > faults_of_samples(smaller);
+    let least = std.zip(&search.input_noise).map(|(std, driven)| {
+        let driven = if of_samples { 0.0 } else { *driven };
+        driven.max(MOVES * std)
+    });
+    moves(larger, smaller, least)
+}
+
+fn faults_of_samples(fit: &Fit) -> usize {
+    let actions = fit.estimate.effects.iter().map(Placed::action);
+    actions
+        .filter(|action| matches!(action, Action::Sampling(_)))
+        .count()
 }
 
 /// The same where `smaller` has a special case of the law in its place.

@@ -69,14 +69,20 @@ pub(crate) fn freedom(fit: &Fit) -> f64 {
     count(fit, |_| true)
 }
 
-/// Parameters of some of the effects, nominal parameters aside.
+/// Parameters of some of the effects, nominal parameters aside, and shapes that are chosen and not fitted.
 fn count(fit: &Fit, of: impl Fn(&Placed) -> bool) -> f64 {
     let runs = fit.estimate.initial.len();
     let times = |parameter: &Parameter| if parameter.per_record { runs } else { 1 };
     let effects = fit.estimate.effects.iter();
     let effects = effects.filter(|placed| !is_nominal(placed) && of(placed));
-    let parameters = effects.flat_map(|placed| placed.effect.parameters());
-    parameters.map(times).sum::<usize>() as f64
+    let fitted = effects.flat_map(|placed| {
+        let parameters = placed.effect.parameters().iter().enumerate();
+        let is_fitted = |&(i, parameter): &(usize, &Parameter)| {
+            parameter.neutral.is_some() || !placed.effect.is_chosen(i)
+        };
+        parameters.filter(is_fitted)
+    });
+    fitted.map(|(_, parameter)| times(parameter)).sum::<usize>() as f64
 }
 
 pub(crate) fn is_nominal(placed: &Placed) -> bool {

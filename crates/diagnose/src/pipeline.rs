@@ -165,7 +165,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     };
     let anew = if unexplained::has_force(&answer) && fails(&answer) {
         let known = &recalibrated.estimate.nominal;
-        let anew = stretches::gap_followed_anew(&check, known, &placed, &plain, &driven);
+        let anew = stretches::gap_followed_anew(&check, known, &placed, &plain);
         anew.ok().flatten()
     } else {
         None

@@ -223,6 +223,45 @@ kind = "displacement"
 at = "base"
 "#;
 
+/// Two converters may take turns, one of them right: the mean of the two is then off as well, and no second fault.
+#[test]
+fn verify_an_alternation_with_one_half_right_is_one_fault() {
+    let truths = [("alternating_gain", 0.04), ("alternating_timing", 4e-4)];
+    for (kind, size) in truths {
+        for even_share in [0.0, 1.0] {
+            let truth = [placed(kind, channel("x"), &[size, even_share])];
+            let outcome = diagnosed(&truth, &[]);
+            assert_eq!(named(&outcome), [(kind.to_string(), channel("x"))]);
+            let share = outcome.diagnosis.verdict.effects[0].parameters[1].value;
+            assert!((share - even_share).abs() < 0.1, "{kind}: {share}");
+        }
+    }
+}
+
+/// What catches a mass also slows it: a contact without damping in it would not be believed.
+#[test]
+fn verify_a_stop_is_found_with_its_damping() {
+    let truth = [placed("end_stop", ground(), &[2.5e-3, 1.0, 4e4, 1e-3])];
+    let outcome = diagnosed(&truth, &[]);
+    assert_eq!(named(&outcome), [("end_stop".to_string(), ground())]);
+    let values = &outcome.diagnosis.verdict.effects[0].parameters;
+    for (k, needed) in [(0, 2.5e-3), (2, 4e4), (3, 1e-3)] {
+        assert!((values[k].value / needed - 1.0).abs() < 0.1, "{values:?}");
+    }
+}
+
+/// A drift is slow from end to end: by its colour the channel would count as one sample.
+#[test]
+fn verify_a_drift_is_seen_past_trifles() {
+    let truth = [
+        placed("sensor_drift", channel("x"), &[4e-4]),
+        placed("stiffness_error", ground(), &[1.02]),
+    ];
+    let outcome = diagnosed(&truth, &[]);
+    let found = named(&outcome);
+    assert_eq!(found[0], ("sensor_drift".to_string(), channel("x")));
+}
+
 /// Along a force that repeats a simulation that is a little off is soon a lap ahead of the machine: over whole records
 /// no fit finds its way, over stretches of them one does.
 #[test]

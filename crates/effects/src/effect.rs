@@ -37,9 +37,9 @@ pub enum SiteKind {
     GroundSpring,
     /// Two nodes that a damper joins.
     Damper,
-    /// A member, or a mass and the ground, without a spring.
+    /// Any two nodes, joined or not, without a spring.
     NoSpring,
-    /// A member, or a mass and the ground, without a damper.
+    /// Any two nodes, joined or not, without a damper.
     NoDamper,
     /// One mass.
     Mass,
@@ -171,6 +171,8 @@ pub struct SiteScale {
     pub signal_range: [f64; 2],
     /// Step of the values of the channel, in model units; zero where there is none to be seen.
     pub signal_step: f64,
+    /// The level nearest to zero of the steps, in model units.
+    pub signal_level: f64,
     /// Stiffness of the nominal springs at the site, N/m.
     pub stiffness_n_per_m: f64,
     /// Whether the model has a spring at the site.
@@ -198,6 +200,7 @@ impl SiteScale {
             displacement_range_m: [-1.4 * displacement_m, 1.4 * displacement_m],
             signal_range: [-1.4, 1.4],
             signal_step: 0.0,
+            signal_level: 0.0,
             stiffness_n_per_m: force_n / displacement_m,
             has_spring: true,
             mass_kg: 1.0,
@@ -384,6 +387,18 @@ pub trait Effect: Sync + Send {
         for (value, parameter) in values.iter_mut().zip(self.parameters()) {
             *value = value.clamp(parameter.lower, parameter.upper);
         }
+    }
+
+    /// Whether the value of the i-th parameter is that of the best start: no fit moves it, and it has no interval.
+    fn is_chosen(&self, place: usize) -> bool {
+        let _ = place;
+        false
+    }
+
+    /// The value of a parameter that a model file may leave out.
+    fn left_out(&self, parameter: &str) -> Option<f64> {
+        let _ = parameter;
+        None
     }
 
     /// What the effect does with these parameter values (as many as [`Effect::parameters`]).

@@ -27,9 +27,10 @@ pub struct Equivalent {
 /// | `input_delay`, `input_lag` | `sensor_delay`, `sensor_lag` | linear, one input, one output | linear elements in a row commute |
 /// | `harmonic_force` | `tone_pickup` | linear, one output | the steady response is a tone |
 /// | `presliding_friction` | `hysteresis` | the same place | Dahl's law is Bouc and Wen's with n = 1, γ = 0 |
-/// | `end_stop` no harder than three times the spring beside it ([`equivalents_beside`]) | `bilinear_stiffness` | the same place | a soft stop is a spring that is stiffer beyond a point |
+/// | `end_stop` on one side, no harder than 4.5 times the spring beside it ([`equivalents_beside`]) | `bilinear_stiffness` | the same place | a soft stop is a spring that is stiffer beyond a point |
+/// | `bilinear_stiffness` with one side three times as stiff as the other | `end_stop` | the same place | a soft stop is a spring that is stiffer beyond a point |
 ///
-/// Each row holds in both directions but the last two, which need a law to take special values. The initial state is unknown to the diagnosis and explains transients.
+/// Each row holds in both directions but the last three, which need a law to take special values. The initial state is unknown to the diagnosis and explains transients.
 ///
 /// ```
 /// use simgap_effects::equivalents;
@@ -115,9 +116,14 @@ pub fn equivalents_beside(effects: &[Placed], i: usize, model: &Model) -> Vec<Eq
 }
 
 /// A contact stiffness above this multiple of that of the spring beside it is a stop, and no spring.
-const SOFT: f64 = 3.0;
+pub(crate) const SOFT: f64 = 3.0;
+/// Within this factor of [`SOFT`] it may be called either.
+const EITHER: f64 = 1.5;
+/// Of two stops the one that is this many times as far away is not reached.
+const UNREACHED: f64 = 5.0;
 
-/// A stop whose contact is about as soft as the spring of its place.
+/// A stop on one side whose contact is about as soft as the spring of its place; a spring that is about as stiff as
+/// a stop beyond a point.
 fn soft_stop(placed: &Placed, model: &Model) -> Option<Equivalent> {
     let Location::Between(pair) = &placed.at else {
         return None;
@@ -125,11 +131,21 @@ fn soft_stop(placed: &Placed, model: &Model) -> Option<Equivalent> {
     let beside = model.springs.iter();
     let beside = beside.filter(|spring| simgap_model::same_pair(&spring.between, pair));
     let stiffness: f64 = beside.map(|spring| spring.stiffness).sum();
-    let [_, _, contact] = placed.values[..] else {
-        return None;
+    let kind = match (placed.effect.kind(), &placed.values[..]) {
+        ("end_stop", [upper, lower, contact, _]) => {
+            let on_one_side = upper.max(*lower) > UNREACHED * upper.min(*lower);
+            let is_soft = *contact <= EITHER * SOFT * stiffness;
+            (on_one_side && is_soft).then_some("bilinear_stiffness")?
+        }
+        ("bilinear_stiffness", [change, ..]) => {
+            let sides = [stiffness, stiffness + change];
+            let (soft, stiff) = (sides[0].min(sides[1]), sides[0].max(sides[1]));
+            (stiff - soft >= SOFT / EITHER * soft).then_some("end_stop")?
+        }
+        _ => return None,
     };
-    (placed.effect.kind() == "end_stop" && contact <= SOFT * stiffness).then(|| Equivalent {
-        kind: "bilinear_stiffness",
+    Some(Equivalent {
+        kind,
         at: placed.at.clone(),
         because: "a soft stop is a spring that is stiffer beyond a point",
     })

@@ -83,11 +83,11 @@ impl Placed {
         }
         let mut values = Vec::with_capacity(parameters.len());
         for parameter in parameters {
-            let value = *entry.parameters.get(parameter.name).ok_or_else(|| {
-                EffectError::MissingParameter {
-                    kind: entry.kind.clone(),
-                    parameter: parameter.name,
-                }
+            let given = entry.parameters.get(parameter.name).copied();
+            let value = given.or_else(|| effect.left_out(parameter.name));
+            let value = value.ok_or_else(|| EffectError::MissingParameter {
+                kind: entry.kind.clone(),
+                parameter: parameter.name,
             })?;
             // An open range ends before infinity; NaN is in no range.
             let inside = (parameter.lower..=parameter.upper).contains(&value);
@@ -180,12 +180,8 @@ impl SiteKind {
             SiteKind::Spring => "two nodes that a spring joins",
             SiteKind::GroundSpring => "a node and the ground that a spring joins",
             SiteKind::Damper => "two nodes that a damper joins",
-            SiteKind::NoSpring => {
-                "two nodes, or a mass and the ground, without a spring between them"
-            }
-            SiteKind::NoDamper => {
-                "two nodes, or a mass and the ground, without a damper between them"
-            }
+            SiteKind::NoSpring => "two nodes without a spring between them",
+            SiteKind::NoDamper => "two nodes without a damper between them",
             SiteKind::Mass => "a mass",
             SiteKind::Input => "an input",
             SiteKind::Channel => "an output",
@@ -206,13 +202,14 @@ fn kinds() -> String {
 pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
     let sprung = |pair: &[String; 2]| model.springs.iter().any(|s| same_pair(&s.between, pair));
     let damped = |pair: &[String; 2]| model.dampers.iter().any(|d| same_pair(&d.between, pair));
-    let between = |keep: &dyn Fn(&[String; 2]) -> bool| -> Vec<Location> {
-        joints(model)
+    let placed = |pairs: Vec<[String; 2]>, keep: &dyn Fn(&[String; 2]) -> bool| -> Vec<Location> {
+        pairs
             .into_iter()
             .filter(keep)
             .map(Location::Between)
             .collect()
     };
+    let between = |keep: &dyn Fn(&[String; 2]) -> bool| placed(joints(model), keep);
     match kind {
         SiteKind::Member => between(&|_| true),
         SiteKind::Spring => between(&sprung),
@@ -220,8 +217,8 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
             between(&|pair| sprung(pair) && pair.iter().any(|node| node == GROUND))
         }
         SiteKind::Damper => between(&damped),
-        SiteKind::NoSpring => between(&|pair| !sprung(pair)),
-        SiteKind::NoDamper => between(&|pair| !damped(pair)),
+        SiteKind::NoSpring => placed(pairs(model), &|pair| !sprung(pair)),
+        SiteKind::NoDamper => placed(pairs(model), &|pair| !damped(pair)),
         SiteKind::Mass => model
             .masses
             .iter()
@@ -250,4 +247,22 @@ fn joints(model: &Model) -> Vec<[String; 2]> {
         }
     }
     joints
+}
+
+/// The joints, and every further pair of masses or of a mass and a base: a member that the model lacks
+/// may join what nothing joins.
+fn pairs(model: &Model) -> Vec<[String; 2]> {
+    let mut pairs = joints(model);
+    for (i, mass) in model.masses.iter().enumerate() {
+        let others = model.masses[i + 1..]
+            .iter()
+            .map(|other| other.name.as_str());
+        for other in others.chain(model.base_nodes()) {
+            let pair = [mass.name.clone(), other.to_string()];
+            if !pairs.iter().any(|known| same_pair(known, &pair)) {
+                pairs.push(pair);
+            }
+        }
+    }
+    pairs
 }

@@ -262,7 +262,7 @@ fn verify_delay_of_a_sine() {
 fn verify_alternating_timing_of_a_sine() {
     let timing_s = 0.0007;
     let found = through(
-        map("alternating_timing", &[timing_s]).as_ref(),
+        map("alternating_timing", &[timing_s, 0.5]).as_ref(),
         &sampled_sine(),
         1.0 / SAMPLE_RATE_HZ,
     );
@@ -287,7 +287,7 @@ fn verify_alternating_timing_of_a_sine() {
 fn verify_alternating_gain_of_a_sine() {
     let gain = 0.03;
     let found = through(
-        map("alternating_gain", &[gain]).as_ref(),
+        map("alternating_gain", &[gain, 0.5]).as_ref(),
         &sampled_sine(),
         1.0 / SAMPLE_RATE_HZ,
     );
@@ -301,6 +301,34 @@ fn verify_alternating_gain_of_a_sine() {
 }
 
 #[test]
+fn verify_one_half_of_an_alternation_may_be_right() {
+    let (signal, step_s) = (sampled_sine(), 1.0 / SAMPLE_RATE_HZ);
+    for (share, right) in [(0.0, 0), (1.0, 1)] {
+        let gains = through(
+            map("alternating_gain", &[0.03, share]).as_ref(),
+            &signal,
+            step_s,
+        );
+        let times = through(
+            map("alternating_timing", &[7e-4, share]).as_ref(),
+            &signal,
+            step_s,
+        );
+        let sign = if right == 0 { -1.0 } else { 1.0 };
+        for i in 5..SAMPLES - 5 {
+            if i % 2 == right {
+                assert_eq!((gains[i], times[i]), (signal[i], signal[i]));
+            } else {
+                assert_close(gains[i], (1.0 + 2.0 * sign * 0.03) * signal[i], 1e-12);
+                let moved = sine(time_s(i) + 2.0 * sign * 7e-4);
+                let error = (times[i] - moved).abs();
+                assert!(error <= interpolation_error() + ROUNDING, "{error} at {i}");
+            }
+        }
+    }
+}
+
+#[test]
 fn verify_maps_keep_the_length_of_short_signals() {
     for kind in [
         "sensor_delay",
@@ -311,7 +339,7 @@ fn verify_maps_keep_the_length_of_short_signals() {
     ] {
         for len in 0..8 {
             let signal = vec![1.0; len];
-            let found = through(map(kind, &[0.0]).as_ref(), &signal, 0.01);
+            let found = through(map(kind, &[0.0, 0.5]).as_ref(), &signal, 0.01);
             assert_eq!(found.len(), len, "{kind}");
         }
     }

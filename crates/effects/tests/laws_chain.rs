@@ -201,7 +201,7 @@ fn verify_clipping_starts_beside_the_edges_of_the_record() {
 
 #[test]
 fn verify_quantisation_rounds_to_the_nearest_level() {
-    let rounded = map("quantisation", &[0.25]);
+    let rounded = map("quantisation", &[0.25, 0.0]);
     let signal = [0.0, 0.124, 0.126, -0.126, 0.375, -0.375, 7.9];
     let needed = [0.0, 0.0, 0.25, -0.25, 0.5, -0.5, 8.0];
     assert_eq!(through(rounded.as_ref(), &signal, 0.01), needed);
@@ -209,7 +209,11 @@ fn verify_quantisation_rounds_to_the_nearest_level() {
     assert_eq!(through(rounded.as_ref(), &needed, 0.01), needed);
     assert!(rounded.is_stepped());
     // Steps beyond the digits of a number change nothing, and never overflow.
-    let fine = through(map("quantisation", &[1e-300]).as_ref(), &[1e10, -0.3], 0.01);
+    let fine = through(
+        map("quantisation", &[1e-300, 0.0]).as_ref(),
+        &[1e10, -0.3],
+        0.01,
+    );
     assert_eq!(fine, [1e10, -0.3]);
 }
 
@@ -218,7 +222,7 @@ fn verify_quantisation_rounds_to_the_nearest_level() {
 fn verify_quantisation_error_is_the_step_over_root_twelve() {
     let step = 0.003;
     let sine: Vec<f64> = (0..20_000).map(|i| (0.7 * f64::from(i)).sin()).collect();
-    let found = through(map("quantisation", &[step]).as_ref(), &sine, 0.01);
+    let found = through(map("quantisation", &[step, 0.0]).as_ref(), &sine, 0.01);
     let square: f64 = found.iter().zip(&sine).map(|(z, y)| (z - y).powi(2)).sum();
     let rms = (square / sine.len() as f64).sqrt();
     // 20 000 errors: the rms of even ones is known to 0.3 %.
@@ -232,7 +236,10 @@ fn verify_quantisation_starts_only_where_a_lattice_is_seen() {
         ..common::scale()
     };
     assert!(effect("quantisation").starts(&without).is_empty());
-    assert_eq!(effect("quantisation").starts(&common::scale()), [[0.01]]);
+    assert_eq!(
+        effect("quantisation").starts(&common::scale()),
+        [[0.01, 0.0]]
+    );
 }
 
 #[test]

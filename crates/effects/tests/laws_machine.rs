@@ -122,7 +122,7 @@ fn verify_backlash_follows_the_recalibrated_model() {
 #[test]
 fn verify_bilinear_stiffness() {
     for change in [700.0, -700.0] {
-        let law = law("bilinear_stiffness", &[change]);
+        let law = law("bilinear_stiffness", &[change, 0.0, 1.0]);
         assert_eq!(force(law.as_ref(), 0.5, -3.0), 0.5 * change);
         assert_eq!(force(law.as_ref(), -0.5, 3.0), 0.0);
         // Half the change at the frequency of the motion, and a mean force Δk A / π.
@@ -136,9 +136,20 @@ fn verify_bilinear_stiffness() {
 }
 
 #[test]
+fn verify_bilinear_stiffness_changes_at_its_point() {
+    for (upper, lower, sign) in [(0.02, 1.0, 1.0), (1.0, 0.02, -1.0)] {
+        let law = law("bilinear_stiffness", &[-700.0, upper, lower]);
+        for (d, needed) in [(0.02, 0.0), (0.05, -700.0 * 0.03), (-0.9, 0.0)] {
+            let found = force(law.as_ref(), sign * d, 1.0);
+            assert_near(found, sign * needed, ROUNDING * 21.0);
+        }
+    }
+}
+
+#[test]
 fn verify_end_stop() {
     let k = 5e4;
-    let stop = law("end_stop", &[0.004, 0.006, k]);
+    let stop = law("end_stop", &[0.004, 0.006, k, 0.0]);
     for (d, needed) in [
         (0.0, 0.0),
         (0.004, 0.0),
@@ -149,7 +160,7 @@ fn verify_end_stop() {
         assert_near(force(stop.as_ref(), d, 1.0), needed, ROUNDING * k);
     }
     // Stops at equal distances are a spring with play.
-    let stop = law("end_stop", &[0.004, 0.004, k]);
+    let stop = law("end_stop", &[0.004, 0.004, k, 0.0]);
     for amplitude in [0.0041, 0.008, 0.05] {
         let needed = k * share_beyond_play(0.004, amplitude);
         assert_near(
@@ -159,9 +170,21 @@ fn verify_end_stop() {
         );
     }
     // On one side only, with the other beyond reach; and not at all.
-    let upper = law("end_stop", &[0.004, f64::INFINITY, k]);
+    let upper = law("end_stop", &[0.004, f64::INFINITY, k, 0.0]);
     assert_eq!(force(upper.as_ref(), -1e6, 0.0), 0.0);
     assert_near(force(upper.as_ref(), 0.005, 0.0), k * 0.001, ROUNDING * k);
+    // A damped contact pushes more on the way in, less on the way out, and never pulls.
+    let damped = law("end_stop", &[0.004, 0.004, k, 2e-3]);
+    for (d, v, needed) in [
+        (0.005, 0.3, k * 0.0016),
+        (0.005, -0.3, k * 0.0004),
+        (0.005, -0.8, 0.0),
+        (0.0039, 5.0, 0.0),
+        (-0.005, -0.3, -k * 0.0016),
+        (-0.005, 0.8, 0.0),
+    ] {
+        assert_near(force(damped.as_ref(), d, v), needed, ROUNDING * k);
+    }
 }
 
 /// Wherever the travel lies, some start stands within it on each side that it reaches.

@@ -46,6 +46,37 @@ fn verify_a_free_mass_still_has_a_tie_to_the_ground() {
     assert!(sites(&axis, SiteKind::Input).is_empty());
 }
 
+#[test]
+fn verify_a_member_the_model_lacks_may_join_what_nothing_joins() {
+    let chain = Model::from_toml(
+        "schema = \"simgap-model/1\"\nname = \"chain\"\n\
+        [[mass]]\nname = \"a\"\nvalue = 1.0\n[[mass]]\nname = \"b\"\nvalue = 1.0\n\
+        [[mass]]\nname = \"c\"\nvalue = 1.0\n\
+        [[spring]]\nname = \"k0\"\nbetween = [\"base\", \"a\"]\nstiffness = 100.0\n\
+        [[spring]]\nname = \"k1\"\nbetween = [\"a\", \"b\"]\nstiffness = 100.0\n\
+        [[spring]]\nname = \"k2\"\nbetween = [\"b\", \"c\"]\nstiffness = 100.0\n\
+        [[input]]\nchannel = \"z\"\nkind = \"displacement\"\nat = \"base\"\n\
+        [[output]]\nchannel = \"y\"\nkind = \"displacement\"\nat = \"c\"\n",
+    )
+    .unwrap();
+    let found: Vec<String> = sites(&chain, SiteKind::NoSpring)
+        .iter()
+        .map(Location::to_string)
+        .collect();
+    assert_eq!(
+        found,
+        [
+            "between a and ground",
+            "between b and ground",
+            "between c and ground",
+            "between a and c",
+            "between b and base",
+            "between c and base",
+        ]
+    );
+    assert_eq!(sites(&chain, SiteKind::Member).len(), 6);
+}
+
 /// What is said of one `[[effect]]` at the end of the model file.
 fn said(effect: &str) -> String {
     let text = format!("{MODEL}\n[[effect]]\n{effect}\n");
@@ -66,7 +97,7 @@ fn regress_messages() {
         "kind = \"coulomb_friction\"\nbetween = [\"load\", \"ground\"]\nfriction_n = 1.0",
         // Outside the physical range, just and far.
         "kind = \"coulomb_friction\"\nbetween = [\"load\", \"ground\"]\nfriction_force_n = -1e-9",
-        "kind = \"alternating_gain\"\nchannel = \"y\"\ngain_difference = 1.5",
+        "kind = \"alternating_gain\"\nchannel = \"y\"\ngain_difference = 1.5\neven_share = 0.5",
         // The wrong kind of place.
         "kind = \"coulomb_friction\"\nmass = \"load\"\nfriction_force_n = 1.0",
         "kind = \"sensor_bias\"\ninput = \"u\"\nbias = 1.0",
@@ -75,6 +106,39 @@ fn regress_messages() {
     ];
     let messages: Vec<String> = cases.iter().map(|case| said(case)).collect();
     insta::assert_snapshot!(messages.join("\n"));
+}
+
+/// Model files of an earlier version lack values that have been added to a law: they mean the law as it was.
+#[test]
+fn verify_what_a_model_file_may_leave_out() {
+    let read = |effect: &str| {
+        let text = format!("{MODEL}\n[[effect]]\n{effect}\n");
+        let model = Model::from_toml(&text).unwrap();
+        Placed::from_entry(&model, &model.effects[0])
+            .unwrap()
+            .values
+    };
+    let at = "between = [\"load\", \"ground\"]";
+    let found = read(&format!(
+        "kind = \"end_stop\"\n{at}\nupper_stop_m = 0.1\nlower_stop_m = 0.2\ncontact_stiffness_n_per_m = 3e4"
+    ));
+    assert_eq!(found, [0.1, 0.2, 3e4, 0.0]);
+    let found = read(&format!(
+        "kind = \"bilinear_stiffness\"\n{at}\nstiffness_change_n_per_m = 50.0"
+    ));
+    assert_eq!(found, [50.0, 0.0, f64::MAX]);
+    let at = "channel = \"y\"";
+    for (kind, value) in [
+        ("alternating_gain", "gain_difference = 0.1"),
+        ("alternating_timing", "timing_s = 0.1"),
+    ] {
+        assert_eq!(
+            read(&format!("kind = \"{kind}\"\n{at}\n{value}")),
+            [0.1, 0.5]
+        );
+    }
+    let found = read(&format!("kind = \"quantisation\"\n{at}\nstep = 0.1"));
+    assert_eq!(found, [0.1, 0.0]);
 }
 
 #[test]

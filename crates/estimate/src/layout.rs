@@ -123,7 +123,7 @@ impl Layout {
             let value = physical[e][i];
             let parameter = &start.effects[e].effect.parameters()[i];
             layout.push_parameter(parameter, value, f64::INFINITY);
-            if freedom.shared_held {
+            if freedom.shared_held || start.effects[e].effect.is_chosen(i) {
                 layout.hold_last(value);
             }
         }

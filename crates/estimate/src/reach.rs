@@ -97,8 +97,11 @@ mod tests {
     }
 
     fn shift(kind: &str, value: f64) -> Placed {
-        let channel = Location::Channel("y".into());
-        Placed::new(find(kind).unwrap(), channel, vec![value])
+        let (effect, channel) = (find(kind).unwrap(), Location::Channel("y".into()));
+        // Of an alternation, as much on the even samples as on the odd ones.
+        let mut values = vec![0.5; effect.parameters().len()];
+        values[0] = value;
+        Placed::new(effect, channel, values)
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Typical sizes at a place, from which the effects take their starting values.
 
+use std::f64::consts::TAU;
+
 use simgap_effects::{LINES, SiteScale};
 use simgap_model::{Location, Model, OutputKind, same_pair};
 use simgap_signal::peaks::{PeakOptions, find_peaks};
@@ -53,6 +55,9 @@ impl Problem {
                 .iter()
                 .filter_map(move |r| r.measured[i].as_deref())
         };
+        let (signal_step, signal_level) = channel
+            .and_then(|i| lattice(measured(i).flatten().copied().collect()))
+            .unwrap_or((0.0, 0.0));
         let moved = path.displacement.get(..first.map_or(0, |run| run.len));
         Ok(SiteScale {
             signal: positive(signal),
@@ -60,9 +65,8 @@ impl Problem {
             duration_s: positive(longest),
             displacement_range_m: range(path.displacement.iter().copied()),
             signal_range: channel.map_or([-1.0, 1.0], |i| range(measured(i).flatten().copied())),
-            signal_step: channel
-                .and_then(|i| lattice_step(measured(i).flatten().copied().collect()))
-                .unwrap_or(0.0),
+            signal_step,
+            signal_level,
             stiffness_n_per_m: if stiffness > 0.0 {
                 stiffness
             } else {
@@ -191,28 +195,46 @@ fn lines(signals: &[&[f64]], step: f64) -> [f64; LINES] {
     lines
 }
 
-/// The step of values that lie on a coarse lattice.
-fn lattice_step(mut values: Vec<f64>) -> Option<f64> {
+/// The step of values that lie on a coarse lattice, and its level nearest to zero.
+fn lattice(mut values: Vec<f64>) -> Option<(f64, f64)> {
     let count = values.len();
     values.sort_by(f64::total_cmp);
     values.dedup();
     if values.len() < 3 || values.len() > MOST_LEVELS || values.len() * 2 > count {
         return None;
     }
-    let (first, last) = (values[0], values[values.len() - 1]);
-    let rounding = 1e-9 * (last - first);
+    let span = values[values.len() - 1] - values[0];
     let gaps = values.windows(2).map(|pair| pair[1] - pair[0]);
-    let smallest = gaps
-        .filter(|gap| *gap > rounding)
-        .fold(f64::INFINITY, f64::min);
-    // The span says the step more finely than a printed gap does.
-    let step = (last - first) / ((last - first) / smallest).round();
-    let off = |value: &&f64| {
-        let level = (**value - first) / step;
-        (level - level.round()).abs() > OFF_LATTICE
-    };
-    let strays = values.iter().filter(off).count();
-    (strays as f64 <= OFF_SHARE * values.len() as f64).then_some(step)
+    let mut gaps: Vec<f64> = gaps.filter(|gap| *gap > 1e-9 * span).collect();
+    gaps.sort_by(f64::total_cmp);
+    // Beside a value off the lattice lie gaps shorter than a step; where levels are rare, most gaps are longer.
+    let candidates = [gaps.get(gaps.len() / 2), gaps.first()];
+    candidates.into_iter().flatten().find_map(|gap| {
+        // The span says the step more finely than a printed gap does.
+        let step = span / (span / gap).round();
+        let level = level_near_zero(&values, step);
+        let off = |value: &&f64| {
+            let turn = (**value - level) / step;
+            (turn - turn.round()).abs() > OFF_LATTICE
+        };
+        let strays = values.iter().filter(off).count();
+        (strays as f64 <= OFF_SHARE * values.len() as f64).then_some((step, level))
+    })
+}
+
+/// The level nearest to zero of values on a lattice, by their mean place between levels: some are strays. Zero itself
+/// where it is a level.
+fn level_near_zero(values: &[f64], step: f64) -> f64 {
+    let turns = values.iter().map(|value| TAU * value / step);
+    let (sin, cos) = turns.fold((0.0, 0.0), |(sin, cos), turn| {
+        (sin + turn.sin(), cos + turn.cos())
+    });
+    let share = sin.atan2(cos) / TAU;
+    if share.abs() > OFF_LATTICE {
+        share * step
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]
@@ -223,9 +245,16 @@ mod tests {
     fn verify_a_lattice_is_found_and_smooth_values_have_none() {
         let smooth: Vec<f64> = (0..2000).map(|i| (f64::from(i) * 0.01).sin()).collect();
         let coarse: Vec<f64> = smooth.iter().map(|v| (v / 0.02).round() * 0.02).collect();
-        let step = lattice_step(coarse).unwrap_or(f64::NAN);
+        let (step, level) = lattice(coarse).unwrap();
+        assert!((step - 0.02).abs() < 1e-12 && level == 0.0, "{step}");
+        // Zero between two levels, and a first sample that lies on none.
+        let between = smooth.iter().map(|v| (v / 0.02).floor() * 0.02 + 0.01);
+        let mut between: Vec<f64> = between.collect();
+        between[0] += 0.004;
+        let (step, level) = lattice(between).unwrap();
         assert!((step - 0.02).abs() < 1e-12, "{step}");
-        assert_eq!(lattice_step(smooth), None);
+        assert!((level.abs() - 0.01).abs() < 1e-3, "{level}");
+        assert_eq!(lattice(smooth), None);
     }
 
     #[test]

@@ -120,7 +120,7 @@ pub(crate) struct Estimate {
     pub(crate) words: String,
     /// With its unit, such as "2.10\u{a0}kN".
     pub(crate) value: String,
-    /// Such as "2.05 to 2.15\u{a0}kN", or that the data do not bound it.
+    /// Such as "2.05 to 2.15\u{a0}kN", or that the data do not bound it, or that it was not fitted.
     pub(crate) interval: String,
     /// Such as "2.10\u{a0}±\u{a0}0.05\u{a0}kN"; the value alone where the interval has no end or is lopsided.
     pub(crate) plus_minus: String,
@@ -146,6 +146,7 @@ pub(crate) fn estimate(parameter: &NamedParameter, unit: &str) -> Estimate {
     let unit = unit.replace(' ', "\u{a0}");
     let figure = |v: f64| at_resolution(v * factor, resolution);
     let interval = match (low.is_finite(), high.is_finite()) {
+        _ if !is_fitted(parameter) => "chosen, not fitted".to_owned(),
         (true, true) => format!("{} to {}{space}{unit}", figure(low), figure(high)),
         (true, false) => format!("above {}{space}{unit}", figure(low)),
         (false, true) => format!("below {}{space}{unit}", figure(high)),
@@ -162,6 +163,11 @@ pub(crate) fn estimate(parameter: &NamedParameter, unit: &str) -> Estimate {
         interval,
         plus_minus,
     }
+}
+
+/// Whether a value was fitted: one that was chosen among a few has no interval.
+pub(crate) fn is_fitted(parameter: &NamedParameter) -> bool {
+    parameter.ci95 != [parameter.value; 2]
 }
 
 /// Half the width of an interval that reaches about as far down as up.

@@ -4,7 +4,7 @@ use simgap_diagnose::{Diagnosis, NamedEffect, Status};
 use simgap_model::Location;
 
 use crate::number::{percent, ratio};
-use crate::unit::estimate;
+use crate::unit::{estimate, is_fitted};
 
 /// Below this a named effect is called the likely cause, not the cause.
 pub(crate) const SURE: f64 = 0.9;
@@ -106,6 +106,9 @@ fn parameters(effect: &NamedEffect, unit: &str) -> String {
         .iter()
         .map(|p| {
             let e = estimate(p, unit);
+            if !is_fitted(p) {
+                return format!("{} {}", e.words, e.value);
+            }
             format!(
                 "{} {} (95\u{a0}% interval: {})",
                 e.words, e.value, e.interval
@@ -172,12 +175,13 @@ fn explains(effects: &[NamedEffect], closed: f64) -> String {
     )
 }
 
-/// An effect with its one figure: "Coulomb friction of 20.4 ± 0.3 N between carriage and ground".
+/// An effect with the one figure that was fitted: "Coulomb friction of 20.4 ± 0.3 N between carriage and ground".
 /// Where it has several, the list below the headline has them.
 fn with_figure(effect: &NamedEffect) -> String {
     let name = kind(&effect.kind);
     let place = place(&effect.at);
-    let [parameter] = effect.parameters.as_slice() else {
+    let mut fitted = effect.parameters.iter().filter(|p| is_fitted(p));
+    let (Some(parameter), None) = (fitted.next(), fitted.next()) else {
         return format!("{name} {place}");
     };
     let e = estimate(parameter, "");

@@ -137,3 +137,42 @@ pub fn noise_std_by_spectrum(values: &[f64]) -> Result<f64, SignalError> {
     let mut upper = psd.density[last / 2..last].to_vec();
     Ok((0.5 * check::median(&mut upper) / LN_2).sqrt())
 }
+
+/// How far the spectrum falls towards fs/2: median of the periodogram (Hann window, straight line removed)
+/// in fs/8 … fs/4 and in fs/4 … 3 fs/8, each over that in 3 fs/8 … fs/2.
+///
+/// Both are near one where the upper band holds white noise and nothing else; low-pass filtered noise that fills
+/// the band gives more, and [`white_noise_std`] takes its end for noise.
+///
+/// # Errors
+///
+/// [`SignalError::TooShort`] below 64 samples, [`SignalError::NonFinite`].
+///
+/// # Examples
+///
+/// ```
+/// use simgap_signal::noise::fall_of_spectrum;
+/// let mut state = 1u64;
+/// let mut uniform = || {
+///     state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+///     (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+/// };
+/// let white: Vec<f64> = (0..4000).map(|_| uniform()).collect();
+/// assert!(fall_of_spectrum(&white)?.iter().all(|fall| (fall - 1.0).abs() < 0.3));
+/// // Through a filter of the first order, x[n] = 0.7 x[n-1] + w[n].
+/// let mut x = 0.0;
+/// let filtered: Vec<f64> = white.iter().map(|w| { x = 0.7 * x + w; x }).collect();
+/// assert!(fall_of_spectrum(&filtered)?[0] > 2.0);
+/// # Ok::<(), simgap_signal::SignalError>(())
+/// ```
+pub fn fall_of_spectrum(values: &[f64]) -> Result<[f64; 2], SignalError> {
+    check::finite("values", values, FEWEST)?;
+    let psd = periodogram(values, 1.0, Window::Hann, Trend::Linear)?;
+    let last = psd.density.len() - 1;
+    let between = |from: usize, to: usize| {
+        let mut band = psd.density[from * last / 4..to * last / 4].to_vec();
+        check::median(&mut band)
+    };
+    let top = between(3, 4);
+    Ok([between(1, 2) / top, between(2, 3) / top])
+}

@@ -1,4 +1,4 @@
-//! Plants whose records are made four times finer than they are stored.
+//! Plants whose records are made finer than they are stored, by an odd factor: every other sample stays every other.
 
 use simgap_diagnose::{Outcome, Request, diagnose};
 use simgap_effects::{Placed, find};
@@ -6,7 +6,7 @@ use simgap_model::{Location, Model, OutputKind};
 use simgap_record::{Channel, Record};
 use simgap_simulate::{Run, Simulator};
 
-const FINER: usize = 4;
+const FINER: usize = 5;
 const DURATION_S: f64 = 10.0;
 /// Noise over the spread of a channel.
 const NOISE: f64 = 0.01;

@@ -4,13 +4,15 @@ use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::equivalent::SOFT;
 
 /// A stop that the motion runs into, on either side.
 ///
 /// ```text
-/// F = k_c (d − s_u)  for d > s_u,   F = k_c (d + s_l)  for d < −s_l,   else 0
+/// F = k_c max(0, d − s_u + τ v)  for d > s_u,   F = k_c min(0, d + s_l + τ v)  for d < −s_l,   else 0
 /// ```
-/// A stop on one side only has the other beyond reach.
+/// A spring and a damper `c_c = k_c τ` beside it that push and never pull. A stop on one side only has the
+/// other beyond reach.
 ///
 /// Reference: \[Worden2001\], chapter 1.
 pub(crate) struct EndStop;
@@ -18,19 +20,37 @@ pub(crate) struct EndStop;
 /// A gap below this share of the range of the motion is none.
 const NO_GAP: f64 = 0.01;
 
+/// A contact whose damping force is below this share of its spring force has none to be seen.
+const ELASTIC: f64 = 0.02;
+/// Contact stiffnesses that a fit starts from, as multiples of the spring of the place.
+const HARDER: [f64; 2] = [5.0, 20.0];
+/// Damping ratio of the lighter mass on the contact that a fit starts from.
+const CONTACT_DAMPING: f64 = 0.1;
+
 struct Law {
     upper: f64,
     lower: f64,
     stiffness: f64,
+    damping_time_s: f64,
 }
 
 impl ForceLaw for Law {
-    lanes!(upper, lower, stiffness);
+    lanes!(upper, lower, stiffness, damping_time_s);
 
     fn force(&self, motion: MemberMotion) -> f64 {
-        let beyond = (motion.displacement - self.upper).max(0.0)
-            + (motion.displacement + self.lower).min(0.0);
-        self.stiffness * beyond
+        let (above, below) = (
+            motion.displacement - self.upper,
+            motion.displacement + self.lower,
+        );
+        let held = self.damping_time_s * motion.velocity;
+        let mut pushed = 0.0;
+        if above > 0.0 {
+            pushed += (above + held).max(0.0);
+        }
+        if below < 0.0 {
+            pushed += (below + held).min(0.0);
+        }
+        self.stiffness * pushed
     }
 }
 
@@ -52,7 +72,7 @@ impl Effect for EndStop {
     }
 
     fn equation(&self) -> &'static str {
-        "F = k_c (d - s_u) (d > s_u), k_c (d + s_l) (d < -s_l)"
+        "F = k_c max(0, d - s_u + tau v) (d > s_u), k_c min(0, d + s_l + tau v) (d < -s_l)"
     }
 
     fn reference(&self) -> Option<&'static str> {
@@ -65,6 +85,7 @@ impl Effect for EndStop {
                 Parameter::limit("upper_stop_m", "m"),
                 Parameter::limit("lower_stop_m", "m"),
                 Parameter::shape("contact_stiffness_n_per_m", "N/m", 0.0, f64::INFINITY),
+                Parameter::shape("contact_damping_time_s", "s", 0.0, f64::INFINITY),
             ]
         }
     }
@@ -79,20 +100,26 @@ impl Effect for EndStop {
         // From the far end inwards, in a motion about zero the same share of either side.
         let inside = |end: f64, share: f64| end - (1.0 - share) * half.min(end);
         let mut starts = vec![];
-        for harder in [2.0, 20.0] {
+        for harder in HARDER {
             let stiffness = harder * scale.stiffness_n_per_m;
+            let held = 2.0 * CONTACT_DAMPING * (scale.mass_kg / stiffness).sqrt();
+            let held = if held.is_finite() { held } else { 0.0 };
             for share in [0.5, 0.75] {
                 let stop = share * reach;
-                starts.push(vec![stop, stop, stiffness]);
+                starts.push(vec![stop, stop, stiffness, held]);
                 if high > 0.0 {
-                    starts.push(vec![inside(high, share), far, stiffness]);
+                    starts.push(vec![inside(high, share), far, stiffness, held]);
                 }
                 if low < 0.0 {
-                    starts.push(vec![far, inside(-low, share), stiffness]);
+                    starts.push(vec![far, inside(-low, share), stiffness, held]);
                 }
             }
         }
         starts
+    }
+
+    fn left_out(&self, parameter: &str) -> Option<f64> {
+        (parameter == "contact_damping_time_s").then_some(0.0)
     }
 
     fn action(&self, values: &[f64]) -> Action {
@@ -100,7 +127,16 @@ impl Effect for EndStop {
             upper: values[0],
             lower: values[1],
             stiffness: values[2],
+            damping_time_s: values[3],
         }))
+    }
+
+    /// An elastic contact on one side about as soft as the spring of the place is a spring with two slopes.
+    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+        let [low, high] = scale.displacement_range_m;
+        let both_sides = values[0] < high && -values[1] > low;
+        let held = values[3] * scale.velocity_m_per_s > ELASTIC * scale.displacement_m;
+        !scale.has_spring || both_sides || held || values[2] >= SOFT * scale.stiffness_n_per_m
     }
 
     fn misnomer(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
@@ -120,6 +156,10 @@ impl Effect for EndStop {
                 "a soft contact over a wide range of motion hardens like a cubic spring",
             ),
             (
+                "bilinear_stiffness",
+                "a soft stop is a spring that is stiffer beyond a point",
+            ),
+            (
                 "clipping",
                 "the displacement stays within limits under both, but a stop also brakes the machine",
             ),
@@ -136,10 +176,27 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_soft_contact_on_one_side_is_a_spring() {
+        let scale = SiteScale {
+            stiffness_n_per_m: 1e4,
+            has_spring: true,
+            ..SiteScale::plain(1e-3, 0.1, 100.0)
+        };
+        let [_, high] = scale.displacement_range_m;
+        let keeps = |lower: f64, contact: f64, damping_time_s: f64| {
+            EndStop.keeps_its_meaning(&[0.5 * high, lower, contact, damping_time_s], &scale)
+        };
+        assert!(keeps(20.0 * high, 4e4, 0.0) && !keeps(20.0 * high, 2e4, 0.0));
+        assert!(keeps(0.5 * high, 2e4, 0.0) && keeps(20.0 * high, 2e4, 1e-3));
+    }
+
+    #[test]
     fn a_stop_without_a_gap_is_misnamed() {
         let scale = SiteScale::plain(1e-3, 0.1, 100.0);
         let range = scale.displacement_range_m[1] - scale.displacement_range_m[0];
-        let of = |upper: [f64; 2]| EndStop.misnomer(&[upper, [5e-4, 6e-4], [1e4, 2e4]], &scale);
+        let of = |upper: [f64; 2]| {
+            EndStop.misnomer(&[upper, [5e-4, 6e-4], [1e4, 2e4], [0.0, 1e-3]], &scale)
+        };
         assert!(of([0.0, 1e-3 * range]).is_some());
         // A wide interval that holds zero says nothing about the gap; one away from zero says that there is one.
         assert!(of([0.0, 0.1 * range]).is_none());
@@ -148,7 +205,10 @@ mod tests {
             has_spring: false,
             ..scale
         };
-        let bumper = EndStop.misnomer(&[[0.0, 1e-3 * range], [5e-4, 6e-4], [1e4, 2e4]], &free);
+        let bumper = EndStop.misnomer(
+            &[[0.0, 1e-3 * range], [5e-4, 6e-4], [1e4, 2e4], [0.0, 1e-3]],
+            &free,
+        );
         assert!(bumper.is_none());
     }
 }
