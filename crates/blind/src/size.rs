@@ -107,8 +107,10 @@ pub(crate) fn instance(random: &mut Random, effect: &dyn Effect, scale: &SiteSca
         .parameters()
         .iter()
         .zip(start)
-        .map(|(parameter, value)| match parameter.neutral {
+        .enumerate()
+        .map(|(i, (parameter, value))| match parameter.neutral {
             _ if parameter.per_record => value,
+            None if effect.is_chosen(i) => value,
             Some(neutral) if neutral.is_infinite() => value * random.uniform(0.8, 1.25),
             None => value * random.log_uniform(0.6, 1.6),
             Some(neutral) => {
