@@ -106,10 +106,10 @@ fn story(cases: &[Case]) -> Result<String, ReproduceError> {
     Ok(format!(
         "At 100 Hz it gives one answer under both truths, the reading with the fewest numbers, and says that a tone in the \
          cable and a force on the mold fit as well: *the published data cannot tell them apart*. The experiment that it asks \
-         for: *{wanted}*. At 500 Hz the two readings part. An alternation moves to 250 − f; only a tone of just that \
-         frequency could still stand for it. The vibration stays at 47 and 53 Hz, and what is named then ticks at those \
-         frequencies or at 50 Hz and never alternates from sample to sample; with one displacement measured and no input \
-         near 50 Hz, whether it comes through the support, the mold or the cable is left open.\n\n\
+         for: *{wanted}*. At 500 Hz the two readings part. An alternation moves to 250 − f. The vibration stays at \
+         47 and 53 Hz, and what is named then ticks at those frequencies or at 50 Hz and never alternates from sample to \
+         sample; with one displacement measured and no input near 50 Hz, whether it comes through the support, the mold or \
+         the cable is left open.\n\n\
          The rest of the gap, the force of Table 3, is taken up at this one operating point by damping, mass and stiffness \
          estimated anew."
     ))
