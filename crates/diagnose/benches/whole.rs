@@ -17,7 +17,7 @@ use simgap_record::Record;
 fn whole_diagnosis(bencher: divan::Bencher<'_, '_>, rows: usize) {
     let truth = [placed("coulomb_friction", ground(), &[1.5])];
     let model = plant();
-    let of_number = |k| record(&model, &truth, k, rows, 1e-3);
+    let of_number = |k| record(&model, &truth, k, rows, 1e-3, 0.0);
     let records: Vec<Record> = (1..4).map(of_number).collect();
     let request = Request {
         model: &model,

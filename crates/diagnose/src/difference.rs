@@ -40,12 +40,12 @@ const MATTERS: f64 = 0.015;
 
 /// Whether an effect moves an output by more than a simulation may be off, and by more than what the noise of the
 /// inputs leaves, which has the colour of the plant and is imitated by what does not exist: `larger` has it,
-/// `smaller` lacks it. A fault of the samples has no such colour.
+/// `smaller` lacks it. A fault of the samples imitates none of it, unless it interpolates between them.
 pub(crate) fn relevant(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool {
     let std = search.problem.output_std().into_iter();
     let of_samples = faults_of_samples(larger) > faults_of_samples(smaller);
     let least = std.zip(&search.input_noise).map(|(std, driven)| {
-        let driven = if of_samples { 0.0 } else { *driven };
+        let driven = if of_samples { 0.0 } else { driven.rms() };
         driven.max(MOVES * std)
     });
     moves(larger, smaller, least)
@@ -54,7 +54,7 @@ pub(crate) fn relevant(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool
 fn faults_of_samples(fit: &Fit) -> usize {
     let actions = fit.estimate.effects.iter().map(Placed::action);
     actions
-        .filter(|action| matches!(action, Action::Sampling(_)))
+        .filter(|action| matches!(action, Action::Sampling(map) if !map.interpolates()))
         .count()
 }
 
@@ -176,7 +176,7 @@ pub(crate) fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesi
     let std = search.problem.output_std();
     // A lag that is not there smooths the noise of the inputs on its way to the outputs.
     let off = search.accuracy.iter().zip(&search.input_noise).zip(std);
-    let off = off.map(|((accuracy, driven), std)| accuracy.max(least * std).hypot(*driven));
+    let off = off.map(|((accuracy, driven), std)| accuracy.max(least * std).hypot(driven.rms()));
     let variances = set.fit.variance.iter().zip(&rival.fit.variance);
     let mut channels = variances.zip(off);
     if channels.all(|((own, its), off)| (own - its).abs().sqrt() < off) {

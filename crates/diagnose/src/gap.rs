@@ -7,6 +7,7 @@ use simgap_signal::noise::white_noise_std;
 use simgap_simulate::Simulator;
 
 use crate::diagnosis::{ChannelGap, Gap};
+use crate::input_noise::InputNoise;
 
 /// A nominal gap that stands out of the noise by less than this share of its square is none: what
 /// is closed of it would be a ratio of roundings.
@@ -122,20 +123,23 @@ pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
 }
 
 /// The gap of the predictions by the model as given, with re-estimated parameters and corrected. `input_noise` is
-/// [what the noise of the inputs does](crate::input_noise), in the units of the channels.
+/// [what the noise of the inputs does](crate::input_noise).
 pub(crate) fn gap(
     check: &Problem,
     nominal: &Prediction,
     recalibrated: &Prediction,
     (effects, corrected): (&[Placed], &Prediction),
-    input_noise: &[f64],
+    input_noise: &[InputNoise],
 ) -> Gap {
+    let floor = noise_floor(check, effects, corrected);
     let std = check.output_std();
-    let driven = input_noise.iter().zip(std).map(|(rms, std)| rms / std);
-    let driven: Vec<f64> = driven
+    let driven: Vec<f64> = input_noise
+        .iter()
+        .zip(std)
+        .zip(&floor)
+        .map(|((driven, std), floor)| driven.beyond((floor * std).powi(2)).sqrt() / std)
         .map(|rms| if rms.is_finite() { rms } else { 0.0 })
         .collect();
-    let floor = noise_floor(check, effects, corrected);
     let totals = [nominal, recalibrated, corrected].map(|p| total(&p.nrmse));
     let noise = total(&floor);
     Gap {

@@ -4,11 +4,14 @@
 //! standard deviation found on each input, even the true model leaves
 //!
 //! ```text
-//! r = G(u + w) − G(u) past initial states,   ε_c² = mean r_c² − (white noise seen on r_c)²      (1)
+//! r = G(u + w) − G(u) past initial states                                                        (1)
+//! ε_c² = mean r_c² − min(white noise seen on r_c, white noise seen on what a set leaves)²        (2)
 //! ```
 //!
 //! in channel c, G the plant from rest. r has the colour of the plant, so an estimate of white noise on the discrepancy
-//! sees the part of it that the plant passes straight on, and no more.
+//! sees the part of it that the plant passes straight on, and no more; a set that smooths the input leaves less of that
+//! part than there is. Of several draws of w the largest r counts in (2): on a plant without a spring it is a random
+//! walk, and one walk is not like another.
 
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states};
@@ -23,20 +26,51 @@ const LEAST: f64 = 1e-5;
 /// flat, filtered excitation falls.
 const FALL: [f64; 2] = [2.0, 1.5];
 /// Draws of w for each run.
-const DRAWS: u64 = 4;
+const DRAWS: u64 = 6;
 
-/// ε of each channel by (1), in its unit, for a model with effects that is driven by the runs of a problem.
+/// What the noise of the inputs does to a channel, in its unit squared.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct InputNoise {
+    /// Mean of r².
+    variance: f64,
+    /// The same of the largest r drawn.
+    most: f64,
+    /// The part of it that looks white, and that an estimate of white noise on the discrepancy holds too.
+    white: f64,
+}
+
+impl InputNoise {
+    /// Root mean square of r.
+    pub(crate) fn rms(&self) -> f64 {
+        self.variance.sqrt()
+    }
+
+    /// ε² by (2) beside white noise of a variance that was found on what a set leaves.
+    pub(crate) fn beyond(&self, found: f64) -> f64 {
+        (self.most - self.white.min(found)).max(0.0)
+    }
+}
+
+/// r of each channel by (1) for a model with effects that is driven by the runs of a problem. Where excitation hides
+/// the noise of an input, it has the least that is seen in another run, of the problem or of `others`.
 pub(crate) fn input_noise(
     problem: &Problem,
     effects: &[Placed],
     weights: &Weights,
-) -> Result<Vec<f64>, EstimateError> {
+    others: &[Run],
+) -> Result<Vec<InputNoise>, EstimateError> {
     let nothing = vec![0.0; problem.model.outputs.len()];
-    let mut squares = nothing.clone();
+    let mut all = vec![InputNoise::default(); nothing.len()];
     let mut count = 0.0;
+    let seen: Vec<Vec<Seen>> = problem.runs.iter().chain(others).map(seen).collect();
     for (index, run) in problem.runs.iter().enumerate() {
         count += run.len as f64;
-        let sizes: Vec<f64> = run.inputs.iter().map(|input| noise_std(input)).collect();
+        let sizes: Vec<f64> = (0..run.inputs.len())
+            .map(|k| match seen[index][k] {
+                Seen::Noise(std) => std,
+                Seen::Hidden { most } => least_seen(&seen, k).map_or(0.0, |std| std.min(most)),
+            })
+            .collect();
         if sizes.iter().all(|size| *size == 0.0) {
             continue;
         }
@@ -62,32 +96,73 @@ pub(crate) fn input_noise(
         });
         let drawn = drawn.collect::<Result<Vec<Run>, EstimateError>>()?;
         let left = fit_initial_states(&problem.with_runs(drawn), effects, weights)?;
-        for ((square, variance), white) in squares.iter_mut().zip(&left.variance).zip(&white_part) {
-            *square += (variance - white).max(0.0) * run.len as f64;
+        for (c, (sum, white)) in all.iter_mut().zip(&white_part).enumerate() {
+            let squares = left.discrepancy.iter().map(|draw| square_sum(&draw[c]));
+            let mean = squares.clone().sum::<f64>() / DRAWS as f64;
+            sum.variance += mean;
+            sum.most += squares.fold(0.0, f64::max);
+            sum.white += (white * run.len as f64).min(mean);
         }
     }
-    let rms = |square: f64| (square / f64::max(count, 1.0)).sqrt();
-    let all: Vec<f64> = squares.into_iter().map(rms).collect();
-    // A plant that runs away says nothing.
-    let is_known = all.iter().all(|rms| rms.is_finite());
-    Ok(if is_known { all } else { nothing })
+    let mean = |sum: InputNoise| {
+        let all = [sum.variance, sum.most, sum.white];
+        // A plant that runs away says nothing.
+        if all.iter().any(|square| !square.is_finite()) {
+            return InputNoise::default();
+        }
+        let [variance, most, white] = all.map(|square| square / f64::max(count, 1.0));
+        InputNoise {
+            variance,
+            most,
+            white,
+        }
+    };
+    Ok(all.into_iter().map(mean).collect())
 }
 
-/// Standard deviation of the white noise on an input; zero where there is none to be seen.
-fn noise_std(input: &[f64]) -> f64 {
+/// White noise on an input.
+#[derive(Debug, Clone, Copy)]
+enum Seen {
+    /// Its standard deviation; zero where there is nothing but rounding.
+    Noise(f64),
+    /// What looks like noise is excitation, and the noise is at most that.
+    Hidden { most: f64 },
+}
+
+fn seen(run: &Run) -> Vec<Seen> {
+    run.inputs.iter().map(|input| noise_of(input)).collect()
+}
+
+fn noise_of(input: &[f64]) -> Seen {
     let mean = input.iter().sum::<f64>() / input.len().max(1) as f64;
     let square: f64 = input.iter().map(|u| (u - mean).powi(2)).sum();
     let std = (square / input.len().max(1) as f64).sqrt();
     let found = white_noise_std(input).map_or(0.0, |noise| noise.std);
-    let is_noise = || {
+    if !found.is_finite() || found < LEAST * std || found == 0.0 {
+        return Seen::Noise(0.0);
+    }
+    let is_flat = || {
         let fall = fall_of_spectrum(input);
         fall.is_ok_and(|fall| fall.iter().zip(FALL).all(|(fall, most)| *fall < most))
     };
-    if (LEAST * std..=MOST * std).contains(&found) && is_noise() {
-        found
+    if found <= MOST * std && is_flat() {
+        Seen::Noise(found)
     } else {
-        0.0
+        Seen::Hidden { most: found }
     }
+}
+
+/// The least noise that is seen on an input in any run.
+fn least_seen(seen: &[Vec<Seen>], input: usize) -> Option<f64> {
+    let stds = seen.iter().filter_map(|run| match run.get(input) {
+        Some(Seen::Noise(std)) => Some(*std),
+        _ => None,
+    });
+    stds.min_by(f64::total_cmp)
+}
+
+fn square_sum(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
 }
 
 /// Adds white noise to a signal, the same for the same key.
@@ -124,10 +199,9 @@ mod tests {
     const STEP_S: f64 = 1e-3;
     const ROWS: usize = 20_000;
 
-    /// ε of the table for its input.
-    fn found(input: Vec<f64>) -> f64 {
-        let model = Model::from_toml(TEXT).unwrap();
-        let run = Run {
+    /// A run of the table by its input.
+    fn run(input: Vec<f64>) -> Run {
+        Run {
             name: "a".into(),
             start_s: 0.0,
             time_step_s: STEP_S,
@@ -135,10 +209,26 @@ mod tests {
             first_index: 0,
             measured: vec![Some(vec![0.0; input.len()])],
             inputs: vec![input],
-        };
-        let problem = Problem::new(&model, vec![run]).unwrap();
-        let found = input_noise(&problem, &[], &Weights::independent(1)).unwrap();
-        found[0]
+        }
+    }
+
+    /// r of an output of the table for its input, other runs beside it.
+    fn driven(output: &str, input: Vec<f64>, others: &[Run]) -> InputNoise {
+        let model = Model::from_toml(&TEXT.replace("displacement", output)).unwrap();
+        let problem = Problem::new(&model, vec![run(input)]).unwrap();
+        let weights = Weights::independent(1);
+        input_noise(&problem, &[], &weights, others).unwrap()[0]
+    }
+
+    /// Root mean square of r in the displacement.
+    fn found(input: Vec<f64>) -> f64 {
+        driven("displacement", input, &[]).rms()
+    }
+
+    fn white(std: f64) -> Vec<f64> {
+        let mut noise = vec![0.0; ROWS];
+        add_white(&mut noise, std, [7, 7, 7]);
+        noise
     }
 
     fn slow(n: usize) -> f64 {
@@ -150,8 +240,7 @@ mod tests {
     #[test]
     fn verify_noise_of_a_force_moves_an_oscillator_by_the_closed_form() {
         let std = 0.3;
-        let mut noise = vec![0.0; ROWS];
-        add_white(&mut noise, std, [7, 7, 7]);
+        let noise = white(std);
         let input = noise.iter().enumerate().map(|(n, w)| slow(n) + w);
         let needed = (std * std * STEP_S / (2.0 * 12.57 * 1974.0)).sqrt();
         let found = found(input.collect());
@@ -167,8 +256,7 @@ mod tests {
         assert_eq!(found((0..ROWS).map(slow).collect()), 0.0);
         assert_eq!(found(vec![3.0; ROWS]), 0.0);
         assert_eq!(found(vec![1.0, 2.0]), 0.0);
-        let mut excitation = vec![0.0; ROWS];
-        add_white(&mut excitation, 10.0, [7, 7, 7]);
+        let mut excitation = white(10.0);
         assert_eq!(found(excitation.clone()), 0.0);
         // The same through a filter of the first order, a slow one: what is left of it at half the sample rate.
         let mut last = 0.0;
@@ -177,5 +265,31 @@ mod tests {
             *value = last;
         }
         assert_eq!(found(excitation), 0.0);
+    }
+
+    #[test]
+    fn noise_that_excitation_hides_is_that_of_another_run() {
+        let noisy = run(white(0.3)
+            .iter()
+            .enumerate()
+            .map(|(n, w)| slow(n) + w)
+            .collect());
+        let alone = driven("displacement", white(10.0), &[]);
+        let beside = driven("displacement", white(10.0), std::slice::from_ref(&noisy));
+        let seen = found(noisy.inputs[0].clone());
+        assert_eq!(alone.rms(), 0.0);
+        assert!((beside.rms() / seen - 1.0).abs() < 0.3, "{beside:?}");
+    }
+
+    /// The acceleration of a mass follows the force on it at once: (w/m)² of r looks white.
+    #[test]
+    fn verify_what_passes_straight_on_counts_once() {
+        let std = 0.3;
+        let input = white(std).into_iter().enumerate().map(|(n, w)| slow(n) + w);
+        let noise = driven("acceleration", input.collect(), &[]);
+        let straight_on = (std / 2.0_f64).powi(2);
+        assert!((noise.white / straight_on - 1.0).abs() < 0.1, "{noise:?}");
+        assert!(noise.beyond(2.0 * straight_on) < 0.3 * straight_on);
+        assert_eq!(noise.beyond(0.0), noise.most);
     }
 }

@@ -144,7 +144,8 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         .into_par_iter()
         .map(|effects| predict(&check, effects, &plain))
         .collect::<Result<Vec<_>, _>>()?;
-    let driven = input_noise(&check, &recalibrated.estimate.nominal, &plain)?;
+    let known = &recalibrated.estimate.nominal;
+    let driven = input_noise(&check, known, &plain, &train.runs)?;
     let gap_of = |placed: &[Placed], predictions: &[Prediction]| {
         let corrected = (placed, &predictions[2]);
         gap(&check, &predictions[0], &predictions[1], corrected, &driven)
@@ -164,7 +165,6 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
             || unexplained::is_poor_stand_in(answer, &judged_by)
     };
     let anew = if unexplained::has_force(&answer) && fails(&answer) {
-        let known = &recalibrated.estimate.nominal;
         let anew = stretches::gap_followed_anew(&check, known, &placed, &plain);
         anew.ok().flatten()
     } else {

@@ -55,11 +55,10 @@ pub(crate) fn remainder(search: &Search<'_>, set: &Hypothesis) -> Result<Remaind
     let noise = noise_variance(&set.fit.discrepancy, &stepped);
     let independence = &search.weights.independence;
     let (mut excess, mut over) = (0.0, 0.0);
-    let driven = search.input_noise.iter().map(|rms| rms * rms);
     let noise: Vec<f64> = noise
         .iter()
-        .zip(driven)
-        .map(|(white, driven)| white + driven)
+        .zip(&search.input_noise)
+        .map(|(white, driven)| white + driven.beyond(*white))
         .collect();
     for ((left, noise), independence) in set.fit.variance.iter().zip(&noise).zip(independence) {
         let ratio = left.max(f64::MIN_POSITIVE) / noise.max(f64::MIN_POSITIVE);

@@ -16,7 +16,7 @@ use simgap_model::Location;
 use crate::accuracy::accuracy;
 use crate::evidence::{effective_samples, evidence, freedom};
 use crate::hypothesis::{Hypothesis, add, name, prior_score, pull, replace, sort, unique};
-use crate::input_noise::input_noise;
+use crate::input_noise::{InputNoise, input_noise};
 use crate::out_of_sight::{spring_to_ground, without_limits};
 
 /// Sets of each size that the next size starts from.
@@ -55,7 +55,7 @@ pub(crate) struct Search<'a> {
     /// How far a simulation of each channel may be off: sets whose predictions differ by less fit alike.
     pub(crate) accuracy: Vec<f64>,
     /// What the noise of the inputs does to each channel.
-    pub(crate) input_noise: Vec<f64>,
+    pub(crate) input_noise: Vec<InputNoise>,
 }
 
 impl<'a> Search<'a> {
@@ -91,7 +91,7 @@ impl<'a> Search<'a> {
             let most = PARAMETERS_APART * left.sqrt();
             given.sqrt().min(std).min(most)
         });
-        let input_noise = input_noise(problem, &baseline.estimate.nominal, &weights)?;
+        let input_noise = input_noise(problem, &baseline.estimate.nominal, &weights, &[])?;
         Ok(Search {
             problem,
             weights,

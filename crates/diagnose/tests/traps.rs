@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{diagnosed, diagnosed_as, ground, named, placed};
+use common::{diagnosed, diagnosed_as, diagnosed_with_noise, ground, named, placed};
 use simgap_diagnose::Status;
 use simgap_model::{Location, Model};
 
@@ -277,4 +277,46 @@ fn verify_a_law_is_found_where_motions_part() {
     assert_eq!(found, [("position_periodic_force".to_string(), ground())]);
     let values = &outcome.diagnosis.verdict.effects[0].parameters;
     assert!((values[2].value / 0.012 - 1.0).abs() < 1e-3, "{values:?}");
+}
+
+/// A strut that is moved by one end.
+const STRUT: &str = r#"schema = "simgap-model/1"
+name = "strut"
+[[spring]]
+name = "k"
+between = ["rod", "ground"]
+stiffness = 4e4
+[[damper]]
+name = "c"
+between = ["rod", "ground"]
+damping = 1500.0
+[[input]]
+channel = "z"
+kind = "displacement"
+at = "rod"
+[[output]]
+channel = "F"
+kind = "force"
+between = ["rod", "ground"]
+"#;
+
+/// A damper differentiates the noise of what moves it. Lags, late clocks and soft supports smooth that noise, and would
+/// leave less of it than the machine as it is.
+#[test]
+fn verify_the_noise_of_an_input_is_not_smoothed_by_what_is_not_there() {
+    let strut = Model::from_toml(STRUT).unwrap();
+    let clean = diagnosed_with_noise(&strut, &[], &[], 2e-3, 0.01);
+    let verdict = clean.diagnosis.verdict;
+    assert!(
+        matches!(verdict.status, Status::None | Status::Parameters),
+        "{verdict:?}"
+    );
+    let gap = clean.diagnosis.gap;
+    let noise = gap.noise_floor.hypot(gap.input_noise);
+    assert!((0.9..1.3).contains(&(noise / gap.nominal)), "{gap:?}");
+
+    let rod = || Location::Between(["rod".into(), "ground".into()]);
+    let truth = [placed("coulomb_friction", rod(), &[5e5])];
+    let outcome = diagnosed_with_noise(&strut, &truth, &[], 2e-3, 0.01);
+    assert_eq!(named(&outcome), [("coulomb_friction".to_string(), rod())]);
 }

@@ -61,6 +61,11 @@ pub trait SignalMap: Send + Sync {
     fn is_stepped(&self) -> bool {
         false
     }
+
+    /// Whether samples are taken between those of the signal: interpolation smooths the noise on it.
+    fn interpolates(&self) -> bool {
+        false
+    }
 }
 
 /// A map that takes every sample at another time: what lies beyond the record is out of its reach.
@@ -76,6 +81,10 @@ impl<T: Retiming> SignalMap for T {
 
     fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
         signal.on_record(|i| self.position(&signal, i))
+    }
+
+    fn interpolates(&self) -> bool {
+        true
     }
 }
 

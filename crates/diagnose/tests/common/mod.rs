@@ -2,7 +2,7 @@
 
 use simgap_diagnose::{Outcome, Request, diagnose};
 use simgap_effects::{Placed, find};
-use simgap_model::{Location, Model, OutputKind};
+use simgap_model::{InputKind, Location, Model, OutputKind};
 use simgap_record::{Channel, Record};
 use simgap_simulate::{Run, Simulator};
 
@@ -91,13 +91,14 @@ fn drive(t: f64, number: f64) -> f64 {
     8.0 * lines.into_iter().enumerate().map(line).sum::<f64>()
 }
 
-/// A record of a machine that is a plant with effects, by its number.
+/// A record of a machine that is a plant with effects, by its number; its input is stored with noise of a share of it.
 pub(crate) fn record(
     model: &Model,
     effects: &[Placed],
     number: u64,
     rows: usize,
     step_s: f64,
+    input_noise: f64,
 ) -> Record {
     let fine = rows * FINER;
     let step = step_s / FINER as f64;
@@ -106,7 +107,7 @@ pub(crate) fn record(
         .collect();
     // All inputs but the first are silent.
     let silent = model.inputs.iter().skip(1);
-    let inputs = std::iter::once(input.clone()).chain(silent.clone().map(|_| vec![0.0; fine]));
+    let inputs = std::iter::once(input.clone()).chain(silent.map(|_| vec![0.0; fine]));
     let run = Run {
         name: "machine".into(),
         start_s: 0.0,
@@ -121,17 +122,33 @@ pub(crate) fn record(
     let outputs = simulator.predict(&run, &rest).unwrap();
     let mut noise = Noise(1000 + number);
     let stored = |signal: &[f64]| -> Vec<f64> { signal.iter().copied().step_by(FINER).collect() };
-    let mut channels = vec![Channel::new("u", "N", stored(&input))];
-    channels.extend(silent.map(|input| Channel::new(&input.channel, "N", vec![0.0; rows])));
+    let mut noisy = |signal: &[f64], share: f64| -> Vec<f64> {
+        let clean = stored(signal);
+        let spread = (clean.iter().map(|y| y * y).sum::<f64>() / rows as f64).sqrt();
+        let noisy = clean.iter().map(|y| y + share * spread * noise.next());
+        noisy.collect()
+    };
+    let mut channels = vec![];
+    for (k, drive) in model.inputs.iter().enumerate() {
+        let unit = match drive.kind {
+            InputKind::Force => "N",
+            InputKind::Displacement => "m",
+        };
+        let values = match k {
+            0 if input_noise > 0.0 => noisy(&input, input_noise),
+            0 => stored(&input),
+            _ => vec![0.0; rows],
+        };
+        channels.push(Channel::new(&drive.channel, unit, values));
+    }
     for (signal, output) in outputs.iter().zip(&model.outputs) {
         let unit = match output.kind {
             OutputKind::Acceleration => "m/s^2",
+            OutputKind::Force => "N",
             _ => "m",
         };
-        let clean = stored(signal);
-        let spread = (clean.iter().map(|y| y * y).sum::<f64>() / rows as f64).sqrt();
-        let noisy = clean.iter().map(|y| y + NOISE * spread * noise.next());
-        channels.push(Channel::new(&output.channel, unit, noisy.collect()));
+        let values = noisy(signal, NOISE);
+        channels.push(Channel::new(&output.channel, unit, values));
     }
     Record::from_uniform(format!("{number}.csv"), 0.0, step_s, channels).unwrap()
 }
@@ -148,8 +165,19 @@ pub(crate) fn diagnosed_as(
     withheld: &[&str],
     step_s: f64,
 ) -> Outcome {
+    diagnosed_with_noise(model, effects, withheld, step_s, 0.0)
+}
+
+/// The same where the input is stored with noise of a share of it.
+pub(crate) fn diagnosed_with_noise(
+    model: &Model,
+    effects: &[Placed],
+    withheld: &[&str],
+    step_s: f64,
+    input_noise: f64,
+) -> Outcome {
     let rows = (DURATION_S / step_s).round() as usize;
-    let of_number = |k| record(model, effects, k, rows, step_s);
+    let of_number = |k| record(model, effects, k, rows, step_s, input_noise);
     let records: Vec<Record> = (1..4).map(of_number).collect();
     let withheld: Vec<String> = withheld.iter().map(ToString::to_string).collect();
     let request = Request {
