@@ -45,10 +45,14 @@ pub(crate) fn doubts(answer: &Answer, gap: &Gap, i: usize) -> Vec<String> {
     }
     let fitted = answer.estimate.estimate.effects.get(i);
     let values = fitted.map_or(&placed.values, |fitted| &fitted.values);
+    // A law may do without what earlier ones of its name did not have.
+    let is_optional = |parameter: &Parameter| placed.effect.left_out(parameter.name).is_some();
     let parameters = placed.effect.parameters().iter().zip(values);
     let shapes = parameters.filter(|(parameter, _)| !parameter.per_record);
-    for (parameter, &value) in shapes.clone() {
-        if ends(parameter).any(|end| (value - end).abs() <= AT_THE_END * end.abs()) {
+    for (parameter, &value) in shapes {
+        if !is_optional(parameter)
+            && ends(parameter).any(|end| (value - end).abs() <= AT_THE_END * end.abs())
+        {
             doubts.push(format!(
                 "{} is at the end of its range, {value}",
                 parameter.name
@@ -57,7 +61,8 @@ pub(crate) fn doubts(answer: &Answer, gap: &Gap, i: usize) -> Vec<String> {
     }
     let parameters = placed.effect.parameters().iter();
     for (parameter, interval) in parameters.zip(answer.intervals(i)) {
-        if parameter.neutral.is_none() && !parameter.per_record && is_unseen(interval) {
+        let shapes = parameter.neutral.is_none() && !parameter.per_record;
+        if shapes && !is_optional(parameter) && is_unseen(interval) {
             doubts.push(format!("these records hardly show its {}", parameter.name));
         }
     }

@@ -250,6 +250,29 @@ fn verify_a_stop_is_found_with_its_damping() {
     }
 }
 
+/// Friction gives like a spring before it slides, with a damper beside that spring or without: one kind either way.
+#[test]
+fn verify_friction_before_it_slides_is_found_with_its_damping() {
+    for damping_time in [6e-3, 0.0] {
+        let truth = [placed(
+            "presliding_friction",
+            ground(),
+            &[6.0, 2e-3, damping_time, 0.0],
+        )];
+        let outcome = diagnosed(&truth, &[]);
+        let kind = "presliding_friction".to_string();
+        assert_eq!(named(&outcome), [(kind, ground())]);
+        let effect = &outcome.diagnosis.verdict.effects[0];
+        assert!(!effect.stand_in, "{:?}", effect.evidence);
+        let values = &effect.parameters;
+        assert!((values[0].value / 6.0 - 1.0).abs() < 0.05, "{values:?}");
+        assert!(
+            (values[2].value - damping_time).abs() < 1e-3,
+            "{damping_time}: {values:?}"
+        );
+    }
+}
+
 /// A drift is slow from end to end: by its colour the channel would count as one sample.
 #[test]
 fn verify_a_drift_is_seen_past_trifles() {

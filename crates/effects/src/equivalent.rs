@@ -112,7 +112,24 @@ pub fn equivalents_beside(effects: &[Placed], i: usize, model: &Model) -> Vec<Eq
     }
     let mut same = equivalents(placed.effect.kind(), &placed.at, &model);
     same.extend(soft_stop(placed, &model));
+    same.retain(|other| other.kind != "hysteresis" || !damps_before_sliding(placed, &model));
     same
+}
+
+/// Damping ratio of a mass on the stiffness before sliding from which on friction is not Dahl's.
+const DAMPED: f64 = 0.03;
+
+/// Whether a friction that gives before it slides has bristles with a damper: no loop of displacement alone does.
+fn damps_before_sliding(placed: &Placed, model: &Model) -> bool {
+    let (Location::Between(pair), [friction, displacement, damping_time, _]) =
+        (&placed.at, &placed.values[..])
+    else {
+        return false;
+    };
+    let masses = model.masses.iter().filter(|m| pair.contains(&m.name));
+    let lightest = masses.map(|mass| mass.value).min_by(f64::total_cmp);
+    let own_time = lightest.map(|mass| (mass * displacement / friction).sqrt());
+    own_time.is_some_and(|time| 0.5 * damping_time > DAMPED * time)
 }
 
 /// A contact stiffness above this multiple of that of the spring beside it is a stop, and no spring.

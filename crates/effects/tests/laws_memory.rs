@@ -52,7 +52,7 @@ const SIGMA: f64 = 2e4;
 fn dahl(start_share: f64) -> Box<dyn ForceLaw> {
     law(
         "presliding_friction",
-        &[FRICTION, FRICTION / SIGMA, start_share],
+        &[FRICTION, FRICTION / SIGMA, 0.0, start_share],
     )
 }
 
@@ -110,17 +110,60 @@ fn verify_presliding_friction_settles_into_its_loop() {
 #[test]
 fn verify_presliding_friction_at_its_limits() {
     // Stiff, it is Coulomb's: the level, with the sign of the motion.
-    let stiff = law("presliding_friction", &[FRICTION, FRICTION / 1e12, 0.3]);
+    let stiff = law(
+        "presliding_friction",
+        &[FRICTION, FRICTION / 1e12, 0.0, 0.3],
+    );
     let found = walk(stiff.as_ref(), [0.001, 0.002, 0.0019, 0.003]);
     assert_eq!(found, [FRICTION, FRICTION, -FRICTION, FRICTION]);
     // Without friction there is nothing, whatever it starts with.
     for displacement in [FRICTION / SIGMA, 0.0] {
-        let none = law("presliding_friction", &[0.0, displacement, 0.8]);
+        let none = law("presliding_friction", &[0.0, displacement, 0.1, 0.8]);
         assert_eq!(walk(none.as_ref(), [0.0, 0.1, -0.1]), [0.0; 3]);
     }
     // At rest it holds what it carries.
     let held = dahl(-0.4);
     assert_eq!(walk(held.as_ref(), [0.0, 0.0]), [-0.4 * FRICTION; 2]);
+}
+
+/// F = σ₀ z + σ₁ ż with ż = v − σ₀ |v| z / F_c, along a motion that turns, by the classical Runge-Kutta method.
+#[test]
+fn verify_damped_presliding_friction_is_lugre() {
+    let (damping, step) = (60.0, 1e-5);
+    let damped = law(
+        "presliding_friction",
+        &[FRICTION, FRICTION / SIGMA, damping / SIGMA, 0.0],
+    );
+    let way = |t: f64| 4e-3 * (t * 30.0).sin() + 1e-3 * (t * 110.0).sin();
+    let speed = |t: f64| 0.12 * (t * 30.0).cos() + 0.11 * (t * 110.0).cos();
+    let rate = |t: f64, z: f64| speed(t) - SIGMA * speed(t).abs() * z / FRICTION;
+    let at = |t: f64| MemberMotion {
+        displacement: way(t),
+        velocity: speed(t),
+        time_s: t,
+    };
+    let (mut memory, mut z) = (damped.first_memory(), 0.0);
+    let mut worst: f64 = 0.0;
+    let mut most: f64 = 0.0;
+    for n in 0..40_000 {
+        let t = f64::from(n) * step;
+        let k1 = rate(t, z);
+        let k2 = rate(t + 0.5 * step, z + 0.5 * step * k1);
+        let k3 = rate(t + 0.5 * step, z + 0.5 * step * k2);
+        let k4 = rate(t + step, z + step * k3);
+        z += step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        let end = damped.follow(memory, at(t), at(t + step));
+        memory = end.memory;
+        let needed = SIGMA * z + damping * rate(t + step, z);
+        worst = worst.max((end.force - needed).abs());
+        most = most.max((end.force - end.memory).abs());
+    }
+    // Moves in which the motion turns are taken as one; elsewhere (2) is exact.
+    assert!(worst < 1e-4 * FRICTION, "{worst}");
+    assert!(most > 0.2 * FRICTION, "the damper does {most}");
+    // In full sliding it rests.
+    let sliding = damped.follow(FRICTION, at(0.0), at(1e-4));
+    assert_eq!(sliding.force, FRICTION);
 }
 
 #[test]
@@ -223,7 +266,7 @@ fn verify_hysteresis_turns() {
 
 #[test]
 fn verify_dahl_is_bouc_wen_without_gamma() {
-    let dahl = law("presliding_friction", &[STIFFNESS * YIELD, YIELD, 0.2]);
+    let dahl = law("presliding_friction", &[STIFFNESS * YIELD, YIELD, 0.0, 0.2]);
     let bouc_wen = bouc_wen(1.0, 1.0, 0.2);
     let path = [0.001, 0.0015, -0.002, 0.004, 0.0041, 0.0];
     let pairs = walk(dahl.as_ref(), path)

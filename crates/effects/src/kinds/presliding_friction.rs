@@ -1,39 +1,59 @@
-//! Friction that gives like a spring before it slides (Dahl).
+//! Friction that gives like a spring before it slides (Dahl, LuGre).
 
 use simgap_integrate::exact::{Followed, ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
-/// Friction that gives like a spring before it slides (Dahl).
+/// Friction that gives like a spring, with a damper beside it, before it slides.
 ///
 /// ```text
-/// dF/dd = (F_c / d_p) (1 − (F / F_c) sgn ḋ)                                         (1)
+/// F = F_e + τ dF_e/dt,   dF_e/dd = (F_c / d_p) (1 − (F_e / F_c) sgn ḋ)              (1)
 /// ```
 ///
 /// Over a monotone move Δd, (1) is solved exactly:
 ///
 /// ```text
-/// F₁ = s F_c + (F₀ − s F_c) exp(−|Δd| / d_p),   s = sgn Δd                          (2)
+/// F_e1 = s F_c + (F_e0 − s F_c) exp(−|Δd| / d_p),   s = sgn Δd                      (2)
 /// ```
 ///
-/// The stiffness before sliding is σ = F_c / d_p. The presliding displacement d_p shapes the loop, the
-/// friction F_c sizes it.
+/// The stiffness before sliding is σ₀ = F_c / d_p. The presliding displacement d_p shapes the loop, the
+/// friction F_c sizes it. With τ = 0 it is Dahl's law; with the bristle deflection z = F_e / σ₀ and the
+/// bristle damping σ₁ = τ σ₀ it is the LuGre law F = σ₀ z + σ₁ ż whose Stribeck curve is flat. In full sliding the damper
+/// rests. What grows with the speed there (σ₂ ḋ) is viscous damping.
 ///
-/// Reference: \[Dahl1968\].
+/// Reference: \[Dahl1968\], \[CanudasDeWit1995\].
 pub(crate) struct PreslidingFriction;
+
+/// Presliding displacements to start from, as shares of the motion.
+const SHARES: [f64; 3] = [0.02, 0.15, 0.8];
+/// Damping ratio of the mass on the stiffness before sliding, to start from.
+const DAMPING: f64 = 0.1;
 
 struct Law {
     friction: f64,
     displacement: f64,
+    damping_time_s: f64,
     start: f64,
 }
 
-impl ForceLaw for Law {
-    lanes!(friction, displacement, start);
+impl Law {
+    /// τ dF_e/dt by (1) where F_e is `force`.
+    #[inline(always)]
+    fn damped(&self, force: f64, velocity: f64) -> f64 {
+        let rate = (self.friction * velocity - force * velocity.abs()) / self.displacement;
+        let damped = self.damping_time_s * rate;
+        // What gives way by nothing has no bristles.
+        if self.displacement > 0.0 { damped } else { 0.0 }
+    }
+}
 
-    fn force(&self, _: MemberMotion) -> f64 {
-        self.start * self.friction
+impl ForceLaw for Law {
+    lanes!(friction, displacement, damping_time_s, start);
+
+    fn force(&self, motion: MemberMotion) -> f64 {
+        let elastic = self.start * self.friction;
+        elastic + self.damped(elastic, motion.velocity)
     }
 
     fn remembers(&self) -> bool {
@@ -44,7 +64,7 @@ impl ForceLaw for Law {
         self.start * self.friction
     }
 
-    /// (2); the memory is the force.
+    /// (2); the memory is F_e.
     // Without exits, so that it becomes vector instructions.
     #[inline(always)]
     fn follow_step(&self, memory: f64, _: f64, from: MemberMotion, to: MemberMotion) -> Followed {
@@ -53,9 +73,22 @@ impl ForceLaw for Law {
         let decay = elementary::exp(-moved.abs() / self.displacement);
         let pulled = level + (memory - level) * decay;
         let held = if moved == 0.0 { memory } else { pulled };
-        let force = if self.friction > 0.0 { held } else { 0.0 };
-        Followed::arrived(force, force)
+        let elastic = if self.friction > 0.0 { held } else { 0.0 };
+        Followed::arrived(elastic + self.damped(elastic, to.velocity), elastic)
     }
+}
+
+fn starts(friction: f64, scale: &SiteScale) -> Vec<Vec<f64>> {
+    let start = |share: f64| {
+        let displacement = share * scale.displacement_m;
+        let damping_time = 2.0 * DAMPING * (scale.mass_kg * displacement / friction).sqrt();
+        // A place without a mass has the time scale of its motion.
+        let of_motion = DAMPING * scale.displacement_m / scale.velocity_m_per_s;
+        let known = damping_time.is_finite() && damping_time > 0.0;
+        let damping_time = if known { damping_time } else { of_motion };
+        vec![friction, displacement, damping_time, 0.0]
+    };
+    SHARES.map(start).to_vec()
 }
 
 impl Effect for PreslidingFriction {
@@ -76,11 +109,11 @@ impl Effect for PreslidingFriction {
     }
 
     fn equation(&self) -> &'static str {
-        "dF/dd = (F_c / d_p) (1 - (F / F_c) sgn d')"
+        "F = F_e + tau dF_e/dt, dF_e/dd = (F_c / d_p) (1 - (F_e / F_c) sgn d')"
     }
 
     fn reference(&self) -> Option<&'static str> {
-        Some("[Dahl1968]")
+        Some("[Dahl1968], [CanudasDeWit1995]")
     }
 
     fn parameters(&self) -> &'static [Parameter] {
@@ -88,16 +121,14 @@ impl Effect for PreslidingFriction {
             &[
                 Parameter::size("friction_force_n", "N", 0.0, f64::INFINITY),
                 Parameter::shape("presliding_displacement_m", "m", 0.0, f64::INFINITY),
+                Parameter::shape("damping_time_s", "s", 0.0, f64::INFINITY),
                 Parameter::size("start_share", "1", -1.0, 1.0).of_record(),
             ]
         }
     }
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let friction = 0.1 * scale.force_n;
-        [0.02, 0.15, 0.8]
-            .map(|share| vec![friction, share * scale.displacement_m, 0.0])
-            .to_vec()
+        starts(0.1 * scale.force_n, scale)
     }
 
     fn contains(&self) -> &'static [&'static str] {
@@ -105,16 +136,19 @@ impl Effect for PreslidingFriction {
     }
 
     fn grown_from(&self, _kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
-        [0.02, 0.15, 0.8]
-            .map(|share| vec![values[0], share * scale.displacement_m, 0.0])
-            .to_vec()
+        starts(values[0], scale)
+    }
+
+    fn left_out(&self, parameter: &str) -> Option<f64> {
+        (parameter == "damping_time_s").then_some(0.0)
     }
 
     fn action(&self, values: &[f64]) -> Action {
         Action::Force(Box::new(Law {
             friction: values[0],
             displacement: values[1],
-            start: values[2],
+            damping_time_s: values[2],
+            start: values[3],
         }))
     }
 
@@ -126,7 +160,7 @@ impl Effect for PreslidingFriction {
             ),
             (
                 "hysteresis",
-                "Dahl friction is a Bouc-Wen hysteresis with n = 1 and gamma = 0",
+                "without damping it is a Bouc-Wen hysteresis with n = 1 and gamma = 0",
             ),
         ]
     }
