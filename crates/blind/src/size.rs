@@ -95,11 +95,11 @@ fn range(values: &[f64]) -> [f64; 2] {
         .fold(start, |[low, high], &v| [low.min(v), high.max(v)])
 }
 
-/// Parameter values of a random instance: one of the effect's starts with its proportions and
+/// Parameter values of a random instance: one of the effect's usual ones with its proportions and
 /// shape moved, so that no search begins at the truth.
 pub(crate) fn instance(random: &mut Random, effect: &dyn Effect, scale: &SiteScale) -> Vec<f64> {
-    let starts = effect.starts(scale);
-    let Some(start) = random.pick(&starts).cloned() else {
+    let usual = effect.usual(scale);
+    let Some(start) = random.pick(&usual).cloned() else {
         return vec![];
     };
     let flip = random.sign();

@@ -1,11 +1,12 @@
 //! Whether a further effect helps on samples that neither set was fitted to.
 
 use rayon::prelude::*;
-use simgap_effects::Placed;
+use simgap_effects::{Action, Placed};
 use simgap_estimate::{EstimateError, Problem, Start, Weights, fit, fit_initial_states};
+use simgap_model::{Location, Model};
 use simgap_simulate::Run;
 
-use crate::hypothesis::Hypothesis;
+use crate::hypothesis::{Hypothesis, name};
 use crate::search::Search;
 
 /// Share of the training records that the confirmation learns from.
@@ -44,7 +45,28 @@ pub(crate) fn confirmed(
     };
     let sets = [larger, smaller];
     let ruling = ruling(search, sets, others.to_vec(), vec![apart.clone()])?;
-    Ok(matches!(ruling, Ruling::Better))
+    Ok(match ruling {
+        Ruling::Better => true,
+        Ruling::Worse => false,
+        // Samples that are struck now and then need not be among those.
+        Ruling::Open => strikes(&search.problem.model, larger, smaller).is_some(),
+    })
+}
+
+/// The channel of what one set has beyond another, where that is a fault of single samples.
+fn strikes(model: &Model, larger: &Hypothesis, smaller: &Hypothesis) -> Option<usize> {
+    let kept = smaller.key();
+    let mut further = larger.effects().iter().filter(|p| !kept.contains(&name(p)));
+    let (Some(further), None) = (further.next(), further.next()) else {
+        return None;
+    };
+    let (Action::Sampling(map), Location::Channel(channel)) = (further.action(), &further.at)
+    else {
+        return None;
+    };
+    let mut outputs = model.outputs.iter();
+    let place = outputs.position(|output| output.channel == *channel);
+    place.filter(|_| map.is_lossy())
 }
 
 /// Which of two sets, both fitted to `learnt`, predicts `kept` better.
@@ -61,7 +83,11 @@ fn ruling(
         .map(|set| held_back_variance(&learnt, &kept, &set.fit.estimate, &search.weights))
         .collect::<Result<Vec<_>, _>>()?;
     // One channel that profits is enough, as long as the others do not pay for it.
-    let ratios: Vec<f64> = left[0].iter().zip(&left[1]).map(|(l, s)| l / s).collect();
+    let mut ratios: Vec<f64> = left[0].iter().zip(&left[1]).map(|(l, s)| l / s).collect();
+    if let Some(channel) = strikes(&search.problem.model, sets[0], sets[1]) {
+        // It does nothing to the others.
+        ratios = vec![ratios[channel]];
+    }
     let best = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let geometric = ratios.iter().map(|r| r.ln()).sum::<f64>() / ratios.len().max(1) as f64;
     Ok(if best < 1.0 - CONFIRMED && geometric < 0.0 {

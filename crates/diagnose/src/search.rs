@@ -370,9 +370,11 @@ impl<'a> Search<'a> {
     }
 
     /// Whether a set leaves nothing but white noise: no further effect could lower the squared
-    /// discrepancy by what makes it relevant. A nominal parameter far from its value leaves a wish.
+    /// discrepancy by what makes it relevant. A nominal parameter far from its value leaves a wish, a converter its steps.
     fn is_exhausted(&self, set: &Hypothesis) -> bool {
-        pull(&set.fit.estimate) <= WISH && self.leaves_less(set, NOTHING_LEFT)
+        pull(&set.fit.estimate) <= WISH
+            && self.leaves_less(set, NOTHING_LEFT)
+            && !self.leaves_rounding(set)
     }
 
     /// Whether a set leaves less than a multiple of the squared noise of every channel.

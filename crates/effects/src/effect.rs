@@ -3,7 +3,7 @@
 use simgap_integrate::exact::ForceLaw;
 use simgap_model::{Location, Model};
 
-use crate::SignalMap;
+use crate::{Line, SignalMap};
 
 /// Which part of the world an effect belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -293,6 +293,12 @@ pub trait Effect: Sync + Send {
     /// but visible instance of the effect at this site.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>>;
 
+    /// Values as they are met with, for pictures and generated cases: the starts, unless these are close to each other
+    /// only to be followed by a fit.
+    fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        self.starts(scale)
+    }
+
     /// Starting values over the range of a clock that may leave no line to start from. They are tried where no single
     /// effect leaves only noise.
     fn sweep(&self, _: &SiteScale) -> Vec<Vec<f64>> {
@@ -379,6 +385,12 @@ pub trait Effect: Sync + Send {
 
     /// The clock of an effect that has one of its own.
     fn clock(&self) -> Option<Clock> {
+        None
+    }
+
+    /// The line of an effect that does the same whatever moves, for its values.
+    fn line(&self, values: &[f64]) -> Option<Line> {
+        let _ = values;
         None
     }
 

@@ -26,6 +26,7 @@ mod equivalent;
 mod error;
 mod free;
 mod kinds;
+mod line;
 mod place;
 mod signal_map;
 
@@ -36,5 +37,6 @@ pub use effect::{
 pub use equivalent::{Equivalent, equivalents, equivalents_beside};
 pub use error::EffectError;
 pub use free::free_laws;
+pub use line::Line;
 pub use place::{Placed, same_place, sites};
 pub use signal_map::{Sampled, SignalMap};

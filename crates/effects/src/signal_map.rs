@@ -62,6 +62,12 @@ pub trait SignalMap: Send + Sync {
         false
     }
 
+    /// Whether it takes from samples what they held, so that what it does hangs on single values: rounding, limits, losses,
+    /// spikes.
+    fn is_lossy(&self) -> bool {
+        false
+    }
+
     /// Whether samples are taken between those of the signal: interpolation smooths the noise on it.
     fn interpolates(&self) -> bool {
         false

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use faer::{Mat, c64};
 
-use crate::{ModelError, StructuralMatrices};
+use crate::{Model, ModelError, Node, Output, OutputKind, StructuralMatrices, same_pair};
 
 /// Which motion a frequency response relates to force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,4 +59,60 @@ pub fn frequency_response(
         FrfKind::Accelerance => c64::new(-omega * omega, 0.0),
     };
     Ok(Mat::from_fn(n, n, |i, j| factor * receptance[(i, j)]))
+}
+
+impl Model {
+    /// Response of every output to a harmonic force on each mass, about rest and with moving bases held,
+    ///
+    /// ```text
+    /// displacement, velocity, acceleration   the row of its node of H(ω), iω H(ω), −ω² H(ω)
+    /// force between a and b                  (k + iωc) (row of a − row of b)
+    /// ```
+    ///
+    /// | symbol | argument | unit | shape |
+    /// |---|---|---|---|
+    /// | ω / 2π | `freq_hz` | Hz, finite | scalar |
+    /// | k, c | | N/m, N s/m of the members between a and b | |
+    /// | result | | unit of the output per N | row: output, column: force |
+    ///
+    /// # Errors
+    /// Those of [`frequency_response`] and [`Model::tangent_matrices`].
+    pub fn output_response(&self, freq_hz: f64) -> Result<Mat<c64>, ModelError> {
+        let structure = self.tangent_matrices()?;
+        let receptance = frequency_response(&structure, freq_hz, FrfKind::Receptance)?;
+        let omega = TAU * freq_hz;
+        let zero = c64::new(0.0, 0.0);
+        let motion =
+            |name: Option<&String>, force: usize| match name.and_then(|name| self.node(name)) {
+                Some(Node::Dof(i)) => receptance[(i, force)],
+                Some(Node::Ground | Node::Base(_)) | None => zero,
+            };
+        let response = |output: &Output, force: usize| match (&output.kind, &output.between) {
+            (OutputKind::Displacement, _) => motion(output.at.as_ref(), force),
+            (OutputKind::Velocity, _) => c64::new(0.0, omega) * motion(output.at.as_ref(), force),
+            (OutputKind::Acceleration, _) => {
+                c64::new(-omega * omega, 0.0) * motion(output.at.as_ref(), force)
+            }
+            (OutputKind::Force, Some(pair)) => {
+                let [a, b] = pair;
+                self.carried(pair, omega) * (motion(Some(a), force) - motion(Some(b), force))
+            }
+            (OutputKind::Force, None) => zero,
+        };
+        Ok(Mat::from_fn(
+            self.outputs.len(),
+            self.dof_count(),
+            |row, force| response(&self.outputs[row], force),
+        ))
+    }
+
+    /// k + iωc of the members between two nodes.
+    fn carried(&self, pair: &[String; 2], omega: f64) -> c64 {
+        let springs = self.springs.iter().filter(|s| same_pair(&s.between, pair));
+        let dampers = self.dampers.iter().filter(|d| same_pair(&d.between, pair));
+        c64::new(
+            springs.map(|spring| spring.stiffness).sum(),
+            omega * dampers.map(|damper| damper.damping).sum::<f64>(),
+        )
+    }
 }

@@ -99,6 +99,46 @@ fn verify_frequency_response_of_one_mass() {
     }
 }
 
+/// A mass between a spring to the ground and one to a moving base: what each output shows of a force on it.
+#[test]
+fn verify_responses_of_outputs_of_one_mass() {
+    let model = Model::from_toml(
+        r#"
+        schema = "simgap-model/1"
+        name = "between two springs"
+        mass = [{ name = "a", value = 2.0 }]
+        spring = [
+          { name = "k1", between = ["a", "ground"], stiffness = 500.0 },
+          { name = "k2", between = ["b", "a"], stiffness = 300.0 },
+        ]
+        damper = [{ name = "c2", between = ["a", "b"], damping = 3.0 }]
+        input = [{ channel = "u", kind = "displacement", at = "b" }]
+        output = [
+          { channel = "x", kind = "displacement", at = "a" },
+          { channel = "v", kind = "velocity", at = "a" },
+          { channel = "a", kind = "acceleration", at = "a" },
+          { channel = "f", kind = "force", between = ["b", "a"] },
+        ]
+        "#,
+    )
+    .unwrap();
+    for freq_hz in [0.0, 0.7, 2.5, 40.0] {
+        let w = TAU * freq_hz;
+        let x = faer::c64::new(800.0 - 2.0 * w * w, 3.0 * w).inv();
+        let exact = [
+            x,
+            x * faer::c64::new(0.0, w),
+            x * (-w * w),
+            -x * faer::c64::new(300.0, 3.0 * w),
+        ];
+        let found = model.output_response(freq_hz).unwrap();
+        for (row, exact) in exact.iter().enumerate() {
+            let error = (found[(row, 0)] - exact).norm();
+            assert!(error <= CLOSED_FORM * exact.norm(), "{row} at {freq_hz} Hz");
+        }
+    }
+}
+
 #[test]
 fn verify_singular_systems_are_refused() {
     let refused = frequency_response(&one(2.0, 0.0, 0.0), 0.0, FrfKind::Receptance);

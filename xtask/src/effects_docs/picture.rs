@@ -121,7 +121,7 @@ fn easily_seen(signature: &Signature) -> f64 {
 /// The instance of the effect whose change is seen best, of its starts grown and shrunk.
 fn shown(stage: &Stage) -> Result<Option<(Vec<f64>, Signature)>, PictureError> {
     let effect = stage.effect;
-    let mut starts = effect.starts(&stage.scale(usual_signal(stage)?));
+    let mut starts = effect.usual(&stage.scale(usual_signal(stage)?));
     // Shapes are listed from one extreme to the other: those in the middle first.
     let mut order: Vec<usize> = (0..starts.len()).collect();
     order.sort_by_key(|i| i.abs_diff(starts.len() / 2));

@@ -77,6 +77,8 @@ const LIGHTEST: f64 = 1e-5;
 /// An attached mass this many times lighter does not move its host by being carried, and one as many times heavier is
 /// not carried.
 const OUT_OF_PROPORTION: f64 = 1e3;
+/// The own mode of a hidden mass is out of sight where the interval of its frequency spans more than this factor.
+const OUT_OF_SIGHT: f64 = 10.0;
 /// An attached mass that is this many times as heavy as its host is hardly carried by it.
 const HEAVIEST: f64 = 10.0;
 
@@ -173,6 +175,14 @@ impl Effect for AttachedMode {
         )
     }
 
+    fn misnomer(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
+        let &[_, [lowest, highest], ..] = ci95 else {
+            return None;
+        };
+        (lowest <= 0.0 || highest > OUT_OF_SIGHT * lowest)
+            .then_some("a hidden mass whose own mode is out of sight is a heavier host")
+    }
+
     fn turns_into(&self) -> &'static [&'static str] {
         &["mass_error"]
     }
@@ -241,5 +251,14 @@ mod tests {
         assert!(of([0.1 * host, 0.2 * host]).is_none());
         // An interval that holds a light one says nothing.
         assert!(of([5.0 * host, 30.0 * host]).is_none());
+    }
+
+    #[test]
+    fn a_mode_out_of_sight_is_a_heavier_host() {
+        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
+        let of = |freq_hz: [f64; 2]| AttachedMode.misnomer(&[[0.1, 0.2], freq_hz], &scale);
+        assert!(of([17.0, 850.0]).is_some());
+        assert!(of([0.0, 30.0]).is_some());
+        assert!(of([17.0, 25.0]).is_none());
     }
 }

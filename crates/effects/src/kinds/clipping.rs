@@ -28,6 +28,10 @@ impl SignalMap for Limits {
             .map(|value| value.max(self.low).min(self.high))
             .collect()
     }
+
+    fn is_lossy(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for Clipping {

@@ -4,6 +4,7 @@ use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::line::Line;
 
 /// A constant force on a mass.
 ///
@@ -59,6 +60,10 @@ impl Effect for ConstantForce {
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![0.05 * scale.force_n]]
+    }
+
+    fn line(&self, values: &[f64]) -> Option<Line> {
+        Some(Line::constant(values[0]))
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -234,6 +234,10 @@ impl SignalMap for Losses {
         }
         delivered
     }
+
+    fn is_lossy(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for Dropouts {

@@ -6,6 +6,7 @@ use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::line::Line;
 
 /// A force at one frequency that the inputs do not hold: an unbalance, a pump, another machine.
 ///
@@ -79,6 +80,14 @@ impl Effect for HarmonicForce {
             amplitude: 0,
             frequency: 1,
             phase: 2,
+        })
+    }
+
+    fn line(&self, values: &[f64]) -> Option<Line> {
+        Some(Line {
+            amplitude: values[0],
+            frequency_hz: values[1],
+            phase_rad: values[2],
         })
     }
 

@@ -168,6 +168,10 @@ impl SignalMap for Spikes {
         }
         delivered
     }
+
+    fn is_lossy(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for Outliers {

@@ -1,6 +1,7 @@
 //! A force that repeats along the travel.
 
 use std::f64::consts::TAU;
+use std::iter::successors;
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
@@ -31,10 +32,15 @@ impl ForceLaw for Law {
     }
 }
 
-/// Periods within the range of the motion: from less than one to twenty, each a sixth more.
+/// Periods within the range of the motion.
 const FEWEST: f64 = 0.7;
+const MOST: f64 = 30.0;
+/// From one start to the next: a sixth of the periods, and at the most half a period, by which two waves part over the
+/// range as far as a fit can follow.
 const STEP: f64 = 1.17;
-const COUNT: i32 = 22;
+const MOST_STEP: f64 = 0.5;
+/// Number of usual ones.
+const USUAL: i32 = 22;
 /// Longest period over the travel: a smaller part of one is any smooth curve.
 const LONGEST: f64 = 1.5;
 
@@ -77,8 +83,19 @@ impl Effect for PositionPeriodicForce {
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         let [low, high] = scale.displacement_range_m;
         let force = 0.05 * scale.force_n;
-        let start = |k| vec![force, force, (high - low) / (FEWEST * STEP.powi(k))];
-        (0..COUNT).map(start).collect()
+        let next = |periods: &f64| Some((periods * STEP).min(periods + MOST_STEP));
+        let counts = successors(Some(FEWEST), next).take_while(|periods| *periods < MOST);
+        counts
+            .map(|periods| vec![force, force, (high - low) / periods])
+            .collect()
+    }
+
+    /// From less than one period to twenty, each a sixth more.
+    fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let [low, high] = scale.displacement_range_m;
+        let force = 0.05 * scale.force_n;
+        let of = |k| vec![force, force, (high - low) / (FEWEST * STEP.powi(k))];
+        (0..USUAL).map(of).collect()
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -34,6 +34,10 @@ impl SignalMap for Steps {
     fn is_stepped(&self) -> bool {
         true
     }
+
+    fn is_lossy(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for Quantisation {

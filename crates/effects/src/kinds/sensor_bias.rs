@@ -1,6 +1,7 @@
 //! A sensor reads a constant too much.
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::line::Line;
 use crate::signal_map::{Sampled, SignalMap};
 
 /// A sensor reads a constant too much.
@@ -52,6 +53,10 @@ impl Effect for SensorBias {
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![0.05 * scale.signal]]
+    }
+
+    fn line(&self, values: &[f64]) -> Option<Line> {
+        Some(Line::constant(values[0]))
     }
 
     fn action(&self, values: &[f64]) -> Action {

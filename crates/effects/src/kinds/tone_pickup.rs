@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::line::Line;
 use crate::signal_map::{Sampled, SignalMap};
 
 /// A cable picks up a tone: the mains, a converter, an image of what lies above half the sample
@@ -109,6 +110,14 @@ impl Effect for TonePickup {
             amplitude: 0,
             frequency: 1,
             phase: 2,
+        })
+    }
+
+    fn line(&self, values: &[f64]) -> Option<Line> {
+        Some(Line {
+            amplitude: values[0],
+            frequency_hz: values[1],
+            phase_rad: values[2],
         })
     }
 
