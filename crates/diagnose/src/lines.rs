@@ -54,7 +54,7 @@ pub(crate) fn one_cause(problem: &Problem, answer: &Answer) -> Option<String> {
     let longest = durations
         .map(|run| run.len as f64 * run.time_step_s)
         .fold(0.0, f64::max);
-    let model = corrected_model(&problem.model, &estimate.nominal);
+    let model = corrected_model(&problem.model, &answer.placed());
     common(&model, &runs, &noise, SAME_TURNS / longest)
 }
 

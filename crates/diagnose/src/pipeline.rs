@@ -87,7 +87,7 @@ pub(crate) struct Answer {
 
 impl Answer {
     /// Everything that is put on the nominal model.
-    fn placed(&self) -> Vec<Placed> {
+    pub(crate) fn placed(&self) -> Vec<Placed> {
         let estimate = &self.estimate.estimate;
         let all = estimate.effects.iter().chain(&estimate.nominal);
         all.cloned().collect()
