@@ -28,6 +28,7 @@ mod free;
 mod kinds;
 mod line;
 mod place;
+mod sight;
 mod signal_map;
 
 pub use catalogue::{catalogue, find};

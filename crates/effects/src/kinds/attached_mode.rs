@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use simgap_model::{Damper, Location, Mass, Model, Spring};
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::sight::is_out_of_sight;
 
 /// A mass that the model lacks rides on one that it has: a panel, a hose, a flexible load, seen at
 /// its host as one more mode.
@@ -77,8 +78,6 @@ const LIGHTEST: f64 = 1e-5;
 /// An attached mass this many times lighter does not move its host by being carried, and one as many times heavier is
 /// not carried.
 const OUT_OF_PROPORTION: f64 = 1e3;
-/// The own mode of a hidden mass is out of sight where the interval of its frequency spans more than this factor.
-const OUT_OF_SIGHT: f64 = 10.0;
 /// An attached mass that is this many times as heavy as its host is hardly carried by it.
 const HEAVIEST: f64 = 10.0;
 
@@ -176,10 +175,10 @@ impl Effect for AttachedMode {
     }
 
     fn misnomer(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
-        let &[_, [lowest, highest], ..] = ci95 else {
+        let &[_, frequency, ..] = ci95 else {
             return None;
         };
-        (lowest <= 0.0 || highest > OUT_OF_SIGHT * lowest)
+        is_out_of_sight(frequency)
             .then_some("a hidden mass whose own mode is out of sight is a heavier host")
     }
 

@@ -4,6 +4,7 @@ use simgap_integrate::exact::{Followed, ForceLaw, MemberMotion};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::sight::is_beyond_motion;
 
 /// A spring that remembers its way and yields (Bouc-Wen).
 ///
@@ -223,6 +224,14 @@ impl Effect for Hysteresis {
         let is_one = |[low, high]: [f64; 2]| low <= 1.0 && (1.0..2.0).contains(&high);
         (is_one(loop_share) && is_one(exponent))
             .then_some("its loop is the simplest of its family but for the intervals: Dahl's")
+    }
+
+    fn misnomer(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
+        let &[_, displacement, ..] = ci95 else {
+            return None;
+        };
+        is_beyond_motion(displacement, scale)
+            .then_some("it yields beyond the motion: a spring that begins stretched")
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {

@@ -1,0 +1,33 @@
+//! Values that records do not show.
+
+use crate::SiteScale;
+
+/// An interval that spans more than this factor says nothing of a value.
+const OUT_OF_SIGHT: f64 = 10.0;
+
+/// Whether the interval of a positive value says nothing of it.
+pub(crate) fn is_out_of_sight([low, high]: [f64; 2]) -> bool {
+    low <= 0.0 || high > OUT_OF_SIGHT * low
+}
+
+/// Whether a displacement from which a spring yields is out of sight, and beyond the motion by all that is known of it.
+pub(crate) fn is_beyond_motion(interval: [f64; 2], scale: &SiteScale) -> bool {
+    let [low, high] = interval;
+    let [least, most] = scale.displacement_range_m;
+    is_out_of_sight(interval) && (low.max(0.0) * high).sqrt() > 0.5 * (most - least)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_yields_beyond_the_motion_is_out_of_sight() {
+        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
+        assert!(is_beyond_motion([2e-3, 0.2], &scale));
+        // Seen, or within the motion.
+        assert!(!is_beyond_motion([0.1, 0.2], &scale));
+        assert!(!is_beyond_motion([1e-6, 1e-4], &scale));
+        assert!(!is_beyond_motion([0.0, 0.2], &scale));
+    }
+}
