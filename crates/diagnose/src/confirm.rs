@@ -40,16 +40,17 @@ pub(crate) fn confirmed(
         Ruling::Worse => return Ok(false),
         Ruling::Open => {}
     }
+    // Samples that are struck now and then need not be among those that are kept.
+    let nothing_said = || strikes(&search.problem.model, larger, smaller).is_some();
     let Some((apart, others)) = runs.split_last().filter(|(_, others)| !others.is_empty()) else {
-        return Ok(false);
+        return Ok(nothing_said());
     };
     let sets = [larger, smaller];
     let ruling = ruling(search, sets, others.to_vec(), vec![apart.clone()])?;
     Ok(match ruling {
         Ruling::Better => true,
         Ruling::Worse => false,
-        // Samples that are struck now and then need not be among those.
-        Ruling::Open => strikes(&search.problem.model, larger, smaller).is_some(),
+        Ruling::Open => nothing_said(),
     })
 }
 

@@ -244,7 +244,7 @@ mod tests {
         let input = noise.iter().enumerate().map(|(n, w)| slow(n) + w);
         let needed = (std * std * STEP_S / (2.0 * 12.57 * 1974.0)).sqrt();
         let found = found(input.collect());
-        // Four draws of sixty decay times each.
+        // Six draws of sixty decay times each.
         assert!(
             (found / needed - 1.0).abs() < 0.15,
             "{found:e} instead of {needed:e}"

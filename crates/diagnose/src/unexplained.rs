@@ -128,7 +128,7 @@ pub(crate) fn unexplained(
             "it leaves more than noise of the check records, and more than 3 % of the gap",
         ),
         (
-            &|| shows_in_training(train, answer, gap, status),
+            &|| shows_in_training(train, answer, status),
             "what the training records show is not explained",
         ),
     ];
@@ -148,7 +148,7 @@ fn stands_out(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bo
     if status == Status::None {
         return true;
     }
-    closed_in_training(train, answer, gap).max(gap.closed) < CLOSES
+    closed_in_training(train, answer, gap.noise_floor).max(gap.closed) < CLOSES
         || (status == Status::Parameters && gap.closed < CLOSES_BEYOND_RECALIBRATION)
         || (status == Status::Effect
             && leaves_much(gap)
@@ -156,11 +156,11 @@ fn stands_out(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bo
             && !answer.follows_anew)
 }
 
-/// Share of the gap that is closed on the records that a set was fitted to, above the noise of the check records.
-fn closed_in_training(train: &Problem, answer: &Answer, gap: &Gap) -> f64 {
+/// Share of the gap that is closed on the records that a set was fitted to, above a floor.
+fn closed_in_training(train: &Problem, answer: &Answer, floor: f64) -> f64 {
     let [nominal, left] =
         [&answer.nominal, &answer.estimate].map(|fit| share_of_motion(train, &fit.variance));
-    closed(nominal, left, gap.noise_floor)
+    closed(nominal, left, floor)
 }
 
 /// Square roots of squared discrepancies over the motion of the training records.
@@ -171,13 +171,15 @@ fn share_of_motion(train: &Problem, variance: &[f64]) -> f64 {
 
 /// Whether the records that were learned from show something that neither parameters explain nor the check records: a stop
 /// that no longer is reached, a limit that no longer clips.
-fn shows_in_training(train: &Problem, answer: &Answer, gap: &Gap, status: Status) -> bool {
+fn shows_in_training(train: &Problem, answer: &Answer, status: Status) -> bool {
+    let left = share_of_motion(train, &answer.estimate.variance);
+    let floor = left / answer.remainder.over_noise;
     answer.remainder.over_noise > STANDS_OUT
-        && share_of_motion(train, &answer.estimate.variance) > TRIFLE
+        && left > TRIFLE
         && match status {
             Status::None => true,
             Status::Parameters => {
-                closed_in_training(train, answer, gap) < CLOSES_BEYOND_RECALIBRATION
+                closed_in_training(train, answer, floor) < CLOSES_BEYOND_RECALIBRATION
             }
             Status::Effect | Status::Unknown => false,
         }
@@ -192,7 +194,7 @@ pub(crate) fn leaves_much(gap: &Gap) -> bool {
 
 /// Whether a set with one force at the most, and no dynamics, leaves nothing but noise of the records it was
 /// fitted to. Where it fails on the check records then, their motion hangs on differences that no estimate
-/// resolves: play, sticking, which samples are lost. Not where the model as given does better.
+/// resolves: play, sticking, which samples are lost. Not where the model as given does better (by more than [`NO_WORSE`]).
 fn explains_all_it_saw(answer: &Answer, gap: &Gap) -> bool {
     let samples = names_sampling(answer);
     let most = if samples {
@@ -322,13 +324,11 @@ pub(crate) fn smooth_set_leaves(answer: &Answer, gap: &Gap) -> bool {
 /// Whether parameters alone, or a set in which nothing makes motions part, leaves more than noise of the check records,
 /// and more of the gap than a stand-in may.
 fn smooth_set_misses(answer: &Answer, gap: &Gap) -> bool {
-    let beyond_noise = gap.corrected.powi(2) - gap.noise_floor.powi(2);
     !answer.judged.is_empty()
         && !has_force(answer)
         && !names_sampling(answer)
-        && gap.corrected > SMOOTH_CHECK_LEAVES * gap.noise_floor
+        && gap.corrected > f64::max(SMOOTH_CHECK_LEAVES * gap.noise_floor, TRIFLE)
         && gap.closed < 1.0 - STAND_IN_LEAVES
-        && beyond_noise > SIMULATION_OFF.powi(2)
 }
 
 /// What is left, over the noise, of the records that a set was fitted to, and of the check records.

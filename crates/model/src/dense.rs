@@ -38,12 +38,9 @@ pub(crate) fn inverse_complex(matrix: &Mat<c64>) -> Option<Mat<c64>> {
 }
 
 /// Whether one of the sizes on the diagonal of a triangle is as good as zero beside another.
-fn is_singular(diagonal: impl Iterator<Item = f64> + Clone) -> bool {
+fn is_singular(mut diagonal: impl Iterator<Item = f64> + Clone) -> bool {
     let largest = diagonal.clone().fold(0.0, f64::max);
-    largest == 0.0
-        || diagonal
-            .into_iter()
-            .any(|size| size <= SINGULAR_FRACTION * largest)
+    largest == 0.0 || diagonal.any(|size| size <= SINGULAR_FRACTION * largest)
 }
 
 #[cfg(test)]
