@@ -40,11 +40,7 @@ pub(crate) fn site_scale(
         .fold(0.0, f64::max);
     let inertia = largest * std(&path.acceleration);
     let signal = match at {
-        Location::Channel(name) => model
-            .outputs
-            .iter()
-            .position(|output| &output.channel == name)
-            .map_or(0.0, |i| std(&outputs[i])),
+        Location::Channel(name) => model.output_index(name).map_or(0.0, |i| std(&outputs[i])),
         Location::Input(name) => model
             .inputs
             .iter()
@@ -54,7 +50,7 @@ pub(crate) fn site_scale(
     };
     let positive = |value: f64| if value > 0.0 { value } else { 1.0 };
     let channel = match at {
-        Location::Channel(name) => model.outputs.iter().position(|o| &o.channel == name),
+        Location::Channel(name) => model.output_index(name),
         _ => None,
     };
     let springs = model.springs.iter().filter(|spring| match at {

@@ -6,7 +6,8 @@ use simgap_estimate::{EstimateError, Problem, Start, Weights, fit, fit_initial_s
 use simgap_model::{Location, Model};
 use simgap_simulate::Run;
 
-use crate::hypothesis::{Hypothesis, name};
+use crate::difference::lacking;
+use crate::hypothesis::Hypothesis;
 use crate::search::Search;
 
 /// Share of the training records that the confirmation learns from.
@@ -35,45 +36,46 @@ pub(crate) fn confirmed(
         .iter()
         .map(|run| run.slice(cut(run)..run.len))
         .collect();
-    match ruling(search, [larger, smaller], first, last)? {
+    let struck = struck(&search.problem.model, larger, smaller);
+    let sets = [larger, smaller];
+    match ruling(search, sets, struck, first, last)? {
         Ruling::Better => return Ok(true),
         Ruling::Worse => return Ok(false),
         Ruling::Open => {}
     }
     // Samples that are struck now and then need not be among those that are kept.
-    let nothing_said = || strikes(&search.problem.model, larger, smaller).is_some();
+    let nothing_said = struck.is_some();
     let Some((apart, others)) = runs.split_last().filter(|(_, others)| !others.is_empty()) else {
-        return Ok(nothing_said());
+        return Ok(nothing_said);
     };
-    let sets = [larger, smaller];
-    let ruling = ruling(search, sets, others.to_vec(), vec![apart.clone()])?;
-    Ok(match ruling {
+    let (learnt, kept) = (others.to_vec(), vec![apart.clone()]);
+    Ok(match ruling(search, sets, struck, learnt, kept)? {
         Ruling::Better => true,
         Ruling::Worse => false,
-        Ruling::Open => nothing_said(),
+        Ruling::Open => nothing_said,
     })
 }
 
-/// The channel of what one set has beyond another, where that is a fault of single samples.
-fn strikes(model: &Model, larger: &Hypothesis, smaller: &Hypothesis) -> Option<usize> {
-    let kept = smaller.key();
-    let mut further = larger.effects().iter().filter(|p| !kept.contains(&name(p)));
-    let (Some(further), None) = (further.next(), further.next()) else {
+/// The channel of what one set has beyond another, where that is a fault of stored values.
+fn struck(model: &Model, larger: &Hypothesis, smaller: &Hypothesis) -> Option<usize> {
+    let mut further = lacking(smaller, larger);
+    let (Some((further, _)), None) = (further.next(), further.next()) else {
         return None;
     };
-    let (Action::Sampling(map), Location::Channel(channel)) = (further.action(), &further.at)
-    else {
-        return None;
-    };
-    let mut outputs = model.outputs.iter();
-    let place = outputs.position(|output| output.channel == *channel);
-    place.filter(|_| map.is_lossy())
+    match (further.action(), &further.at) {
+        (Action::Sampling(map), Location::Channel(channel)) if map.is_lossy() => {
+            model.output_index(channel)
+        }
+        _ => None,
+    }
 }
 
-/// Which of two sets, both fitted to `learnt`, predicts `kept` better.
+/// Which of two sets, both fitted to `learnt`, predicts `kept` better: on the `struck` channel, where a fault of its stored
+/// values is all they differ by, else on all.
 fn ruling(
     search: &Search<'_>,
     sets: [&Hypothesis; 2],
+    struck: Option<usize>,
     learnt: Vec<Run>,
     kept: Vec<Run>,
 ) -> Result<Ruling, EstimateError> {
@@ -84,11 +86,11 @@ fn ruling(
         .map(|set| held_back_variance(&learnt, &kept, &set.fit.estimate, &search.weights))
         .collect::<Result<Vec<_>, _>>()?;
     // One channel that profits is enough, as long as the others do not pay for it.
-    let mut ratios: Vec<f64> = left[0].iter().zip(&left[1]).map(|(l, s)| l / s).collect();
-    if let Some(channel) = strikes(&search.problem.model, sets[0], sets[1]) {
-        // It does nothing to the others.
-        ratios = vec![ratios[channel]];
-    }
+    let asked = |c: &usize| struck.is_none_or(|struck| *c == struck);
+    let ratios: Vec<f64> = (0..left[0].len())
+        .filter(asked)
+        .map(|c| left[0][c] / left[1][c])
+        .collect();
     let best = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let geometric = ratios.iter().map(|r| r.ln()).sum::<f64>() / ratios.len().max(1) as f64;
     Ok(if best < 1.0 - CONFIRMED && geometric < 0.0 {

@@ -3,14 +3,13 @@
 //! A simulation is no better than what is known of its inputs, and a record no better than its noise: sets that
 //! differ by less are told by the number of their parameters, or by how far they take the nominal ones.
 
-use simgap_effects::{Action, Placed, same_place};
+use simgap_effects::{Action, Placed, is_unseen, same_place};
 use simgap_estimate::{EstimateError, Fit, Interval, fit_initial_states};
 
 use crate::evidence::{evidence, is_nominal};
 use crate::hypothesis::{Hypothesis, bends, name, pull};
 use crate::out_of_sight::turns_into;
 use crate::search::Search;
-use crate::stand_in::is_unseen;
 use crate::verdict::{EARNS, INDISTINGUISHABLE};
 
 /// Smallest relative fall of the squared discrepancy that counts as an effect: below it the
@@ -195,7 +194,7 @@ pub(crate) fn replacement<'a>(set: &Hypothesis, rival: &'a Hypothesis) -> Option
 }
 
 /// The effects of another set that a set lacks, with their intervals.
-fn lacking<'a>(
+pub(crate) fn lacking<'a>(
     set: &Hypothesis,
     other: &'a Hypothesis,
 ) -> impl Iterator<Item = (&'a Placed, &'a [Interval])> {
@@ -224,6 +223,6 @@ pub(crate) fn must_lead(
     }
     let parameters = hidden.effect.parameters().iter().zip(intervals);
     let mut shapes = parameters.filter(|(parameter, _)| parameter.neutral.is_none());
-    let hides = shapes.any(|(_, interval)| is_unseen(interval));
+    let hides = shapes.any(|(_, interval)| is_unseen(interval.ci95));
     hides.then_some(INDISTINGUISHABLE)
 }

@@ -17,7 +17,8 @@ use std::f64::consts::TAU;
 use faer::{Mat, c64};
 use simgap_effects::{Line, Placed};
 use simgap_estimate::Problem;
-use simgap_model::{Location, Model};
+use simgap_model::{Location, Model, Node};
+use simgap_simulate::Run;
 
 use crate::outcome::corrected_model;
 use crate::pipeline::Answer;
@@ -46,18 +47,15 @@ pub(crate) fn one_cause(problem: &Problem, answer: &Answer) -> Option<String> {
     let estimate = &answer.estimate.estimate;
     let of_run = |record: usize| -> Lines {
         let placed = estimate.effects.iter().map(|e| e.in_record(record));
-        let run = &problem.runs[record];
-        let middle_s = run.start_s + 0.5 * run.len as f64 * run.time_step_s;
+        let middle_s = problem.runs[record].middle_s();
         placed
             .filter_map(|placed| line(&problem.model, &placed, middle_s))
             .collect()
     };
     let runs: Vec<Lines> = (0..problem.runs.len()).map(of_run).collect();
     let noise: Vec<f64> = answer.estimate.variance.iter().map(|v| v.sqrt()).collect();
-    let durations = problem.runs.iter();
-    let longest = durations
-        .map(|run| run.len as f64 * run.time_step_s)
-        .fold(0.0, f64::max);
+    let durations = problem.runs.iter().map(Run::duration_s);
+    let longest = durations.fold(0.0, f64::max);
     let model = corrected_model(&problem.model, &answer.placed());
     common(&model, &runs, &noise, SAME_TURNS / longest)
 }
@@ -70,14 +68,12 @@ fn line(model: &Model, placed: &Placed, time_s: f64) -> Option<(Place, Line)> {
         ..line
     };
     let place = match &placed.at {
-        Location::Channel(name) => {
-            let mut outputs = model.outputs.iter();
-            Place::Sensor(outputs.position(|output| output.channel == *name)?)
-        }
-        Location::Mass(name) => {
-            Place::Mass(model.masses.iter().position(|mass| mass.name == *name)?)
-        }
-        _ => return None,
+        Location::Channel(name) => Place::Sensor(model.output_index(name)?),
+        Location::Mass(name) => match model.node(name)? {
+            Node::Dof(mass) => Place::Mass(mass),
+            Node::Ground | Node::Base(_) => return None,
+        },
+        Location::Between(_) | Location::Input(_) => return None,
     };
     Some((place, line))
 }

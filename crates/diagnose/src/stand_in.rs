@@ -1,7 +1,6 @@
 //! Signs that a named effect only stands in for a law that the catalogue does not have.
 
-use simgap_effects::{Action, Family, Parameter, Placed, Sampled};
-use simgap_estimate::Interval;
+use simgap_effects::{Action, Family, Parameter, Placed, Sampled, is_unseen};
 
 use crate::Gap;
 use crate::evidence::is_nominal;
@@ -10,8 +9,6 @@ use crate::unexplained::smooth_set_leaves;
 
 /// A value this near to the end of its range, relative to it, is at the end.
 const AT_THE_END: f64 = 1e-3;
-/// A shape whose interval spans more than this factor is not seen.
-const UNSEEN: f64 = 10.0;
 /// Factors are the same when their logarithms differ by less than this share: nominal parameters are off by
 /// some percent besides.
 const SAME_FACTOR: f64 = 0.25;
@@ -62,7 +59,7 @@ pub(crate) fn doubts(answer: &Answer, gap: &Gap, i: usize) -> Vec<String> {
     let parameters = placed.effect.parameters().iter();
     for (parameter, interval) in parameters.zip(answer.intervals(i)) {
         let shapes = parameter.neutral.is_none() && !parameter.per_record;
-        if shapes && !is_optional(parameter) && is_unseen(interval) {
+        if shapes && !is_optional(parameter) && is_unseen(interval.ci95) {
             doubts.push(format!("these records hardly show its {}", parameter.name));
         }
     }
@@ -145,12 +142,6 @@ fn same_factor(answer: &Answer, i: usize) -> Option<&'static str> {
 fn ends(parameter: &Parameter) -> impl Iterator<Item = f64> + use<> {
     let ends = [parameter.lower, parameter.upper].into_iter();
     ends.filter(|end| end.is_finite() && *end != 0.0)
-}
-
-/// Whether the data hardly show a parameter.
-pub(crate) fn is_unseen(interval: &Interval) -> bool {
-    let [low, high] = interval.ci95;
-    !(low.is_finite() && high.is_finite()) || low <= 0.0 && high > 0.0 || high / low > UNSEEN
 }
 
 #[cfg(test)]

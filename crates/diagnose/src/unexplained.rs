@@ -310,13 +310,17 @@ fn three_leave(answer: &Answer, gap: &Gap) -> bool {
         && !names_sampling(answer)
 }
 
+/// Whether nothing in a set makes motions part, or hangs on single samples.
+fn is_smooth(answer: &Answer) -> bool {
+    !has_force(answer) && !names_sampling(answer)
+}
+
 /// Whether a set in which nothing makes motions part leaves more than noise of the records it was fitted to and of
 /// the check records, and more than a simulation may be off: it is only like what is there.
 pub(crate) fn smooth_set_leaves(answer: &Answer, gap: &Gap) -> bool {
     let beyond_noise = gap.corrected.powi(2) - gap.noise_floor.powi(2);
     answer.names_more_than_parameters()
-        && !has_force(answer)
-        && !names_sampling(answer)
+        && is_smooth(answer)
         && exceeds(left_of_both(answer, gap), &SMOOTH_LEAVES)
         && beyond_noise > SIMULATION_OFF.powi(2)
 }
@@ -325,8 +329,7 @@ pub(crate) fn smooth_set_leaves(answer: &Answer, gap: &Gap) -> bool {
 /// and more of the gap than a stand-in may.
 fn smooth_set_misses(answer: &Answer, gap: &Gap) -> bool {
     !answer.judged.is_empty()
-        && !has_force(answer)
-        && !names_sampling(answer)
+        && is_smooth(answer)
         && gap.corrected > f64::max(SMOOTH_CHECK_LEAVES * gap.noise_floor, TRIFLE)
         && gap.closed < 1.0 - STAND_IN_LEAVES
 }

@@ -7,8 +7,8 @@ use simgap_estimate::{EstimateError, Start};
 use crate::common_cause::is_common_cause;
 use crate::confirm::confirmed;
 use crate::difference::{
-    contains_named, discount, fall, identified, is_sure, level, matters, must_lead, relevant,
-    relevant_beyond_special_case, replacement,
+    contains_named, discount, fall, identified, is_sure, lacking, level, matters, must_lead,
+    relevant, relevant_beyond_special_case, replacement,
 };
 use crate::evidence::{freedom, probabilities};
 use crate::hypothesis::{Hypothesis, bends, name, remove, sort, unique};
@@ -181,10 +181,8 @@ fn earns(
 
 /// Whether the effect that a subset lacks is a nominal parameter that it still adjusts.
 fn is_under_prior(set: &Hypothesis, subset: &Hypothesis) -> bool {
-    let kept = subset.key();
-    let mut lost = set.effects().iter().filter(|p| !kept.contains(&name(p)));
     let adjusted = &subset.fit.estimate.nominal;
-    lost.all(|placed| adjusted.iter().any(|known| name(known) == name(placed)))
+    lacking(subset, set).all(|(placed, _)| adjusted.iter().any(|known| name(known) == name(placed)))
 }
 
 /// What is left of a set when it is pruned and judged, if it still is an answer; a rival that takes a place may turn

@@ -147,6 +147,18 @@ pub struct Clock {
     pub phase: usize,
 }
 
+impl Clock {
+    /// The line of an effect that is that swing and nothing else, for its values.
+    #[must_use]
+    pub fn line(self, values: &[f64]) -> Line {
+        Line {
+            frequency_hz: values[self.frequency],
+            amplitude: values[self.amplitude],
+            phase_rad: values[self.phase],
+        }
+    }
+}
+
 /// Strongest lines that starting frequencies are taken from.
 pub const LINES: usize = 4;
 

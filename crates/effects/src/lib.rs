@@ -40,4 +40,5 @@ pub use error::EffectError;
 pub use free::free_laws;
 pub use line::Line;
 pub use place::{Placed, same_place, sites};
+pub use sight::is_unseen;
 pub use signal_map::{Sampled, SignalMap};

@@ -2,19 +2,20 @@
 
 use crate::SiteScale;
 
-/// An interval that spans more than this factor says nothing of a value.
-const OUT_OF_SIGHT: f64 = 10.0;
+/// A value whose interval spans more than this factor is not seen.
+const UNSEEN: f64 = 10.0;
 
-/// Whether the interval of a positive value says nothing of it.
-pub(crate) fn is_out_of_sight([low, high]: [f64; 2]) -> bool {
-    low <= 0.0 || high > OUT_OF_SIGHT * low
+/// Whether records hardly show a value, by its interval: it spans more than a factor of ten, or zero.
+#[must_use]
+pub fn is_unseen([low, high]: [f64; 2]) -> bool {
+    !(low.is_finite() && high.is_finite()) || low <= 0.0 && high > 0.0 || high / low > UNSEEN
 }
 
 /// Whether a displacement from which a spring yields is out of sight, and beyond the motion by all that is known of it.
 pub(crate) fn is_beyond_motion(interval: [f64; 2], scale: &SiteScale) -> bool {
     let [low, high] = interval;
     let [least, most] = scale.displacement_range_m;
-    is_out_of_sight(interval) && (low.max(0.0) * high).sqrt() > 0.5 * (most - least)
+    is_unseen(interval) && (low.max(0.0) * high).sqrt() > 0.5 * (most - least)
 }
 
 #[cfg(test)]

@@ -76,10 +76,6 @@ pub(crate) struct Layout {
     pub(crate) upper: Vec<f64>,
 }
 
-fn middle(run: &Run) -> f64 {
-    run.start_s + 0.5 * run.len as f64 * run.time_step_s
-}
-
 impl Layout {
     pub(crate) fn new(
         start: &Start,
@@ -103,7 +99,7 @@ impl Layout {
             own_values: places(true),
             phases: vec![],
             state_len: state_scale.len(),
-            middle_s: runs.iter().map(middle).collect(),
+            middle_s: runs.iter().map(Run::middle_s).collect(),
             scale: vec![],
             prior_std: vec![],
             prior_mean: vec![],

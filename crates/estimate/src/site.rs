@@ -89,8 +89,7 @@ impl Problem {
     #[must_use]
     pub fn lines_left(&self, fit: &Fit, at: &Location) -> [f64; LINES] {
         let runs = self.runs.iter().zip(&fit.discrepancy);
-        let duration = |run: &Run| run.len as f64 * run.time_step_s;
-        let longest = runs.max_by(|(a, _), (b, _)| duration(a).total_cmp(&duration(b)));
+        let longest = runs.max_by(|(a, _), (b, _)| a.duration_s().total_cmp(&b.duration_s()));
         let Some((run, left)) = longest else {
             return [0.0; LINES];
         };
@@ -103,7 +102,7 @@ impl Problem {
 
     fn channel_at(&self, at: &Location) -> Option<usize> {
         match at {
-            Location::Channel(name) => self.model.outputs.iter().position(|o| &o.channel == name),
+            Location::Channel(name) => self.model.output_index(name),
             _ => None,
         }
     }

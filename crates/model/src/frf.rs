@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use faer::{Mat, c64};
 
-use crate::{Model, ModelError, Node, Output, OutputKind, StructuralMatrices, same_pair};
+use crate::{Model, ModelError, Node, Output, OutputKind, StructuralMatrices};
 
 /// Which motion a frequency response relates to force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,12 +53,19 @@ pub fn frequency_response(
             matrix: "dynamic stiffness matrix",
             context: format!("at {freq_hz} Hz"),
         })?;
-    let factor = match kind {
-        FrfKind::Receptance => c64::new(1.0, 0.0),
-        FrfKind::Mobility => c64::new(0.0, omega),
-        FrfKind::Accelerance => c64::new(-omega * omega, 0.0),
-    };
+    let factor = kind.factor(omega);
     Ok(Mat::from_fn(n, n, |i, j| factor * receptance[(i, j)]))
+}
+
+impl FrfKind {
+    /// What the motion is of the displacement.
+    fn factor(self, omega: f64) -> c64 {
+        match self {
+            FrfKind::Receptance => c64::new(1.0, 0.0),
+            FrfKind::Mobility => c64::new(0.0, omega),
+            FrfKind::Accelerance => c64::new(-omega * omega, 0.0),
+        }
+    }
 }
 
 impl Model {
@@ -87,32 +94,25 @@ impl Model {
                 Some(Node::Dof(i)) => receptance[(i, force)],
                 Some(Node::Ground | Node::Base(_)) | None => zero,
             };
-        let response = |output: &Output, force: usize| match (&output.kind, &output.between) {
-            (OutputKind::Displacement, _) => motion(output.at.as_ref(), force),
-            (OutputKind::Velocity, _) => c64::new(0.0, omega) * motion(output.at.as_ref(), force),
-            (OutputKind::Acceleration, _) => {
-                c64::new(-omega * omega, 0.0) * motion(output.at.as_ref(), force)
+        let response = |output: &Output, force: usize| {
+            let of_node = |kind: FrfKind| kind.factor(omega) * motion(output.at.as_ref(), force);
+            match (&output.kind, &output.between) {
+                (OutputKind::Displacement, _) => of_node(FrfKind::Receptance),
+                (OutputKind::Velocity, _) => of_node(FrfKind::Mobility),
+                (OutputKind::Acceleration, _) => of_node(FrfKind::Accelerance),
+                (OutputKind::Force, Some(pair)) => {
+                    let [stiffness, damping] = self.stiffness_and_damping(pair);
+                    let [a, b] = pair;
+                    c64::new(stiffness, omega * damping)
+                        * (motion(Some(a), force) - motion(Some(b), force))
+                }
+                (OutputKind::Force, None) => zero,
             }
-            (OutputKind::Force, Some(pair)) => {
-                let [a, b] = pair;
-                self.carried(pair, omega) * (motion(Some(a), force) - motion(Some(b), force))
-            }
-            (OutputKind::Force, None) => zero,
         };
         Ok(Mat::from_fn(
             self.outputs.len(),
             self.dof_count(),
             |row, force| response(&self.outputs[row], force),
         ))
-    }
-
-    /// k + iωc of the members between two nodes.
-    fn carried(&self, pair: &[String; 2], omega: f64) -> c64 {
-        let springs = self.springs.iter().filter(|s| same_pair(&s.between, pair));
-        let dampers = self.dampers.iter().filter(|d| same_pair(&d.between, pair));
-        c64::new(
-            springs.map(|spring| spring.stiffness).sum(),
-            omega * dampers.map(|damper| damper.damping).sum::<f64>(),
-        )
     }
 }

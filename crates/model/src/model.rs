@@ -96,6 +96,24 @@ impl Model {
         members
     }
 
+    /// Stiffness, N/m, and damping, N s/m, of all members between two nodes, whichever way round they are written.
+    #[must_use]
+    pub fn stiffness_and_damping(&self, pair: &[String; 2]) -> [f64; 2] {
+        let springs = self.springs.iter().filter(|s| same_pair(&s.between, pair));
+        let dampers = self.dampers.iter().filter(|d| same_pair(&d.between, pair));
+        [
+            springs.map(|spring| spring.stiffness).sum(),
+            dampers.map(|damper| damper.damping).sum(),
+        ]
+    }
+
+    /// The place of a channel among the outputs.
+    #[must_use]
+    pub fn output_index(&self, channel: &str) -> Option<usize> {
+        let mut outputs = self.outputs.iter();
+        outputs.position(|output| output.channel == channel)
+    }
+
     /// M, C and K, and the coupling of the moving base nodes.
     ///
     /// # Errors

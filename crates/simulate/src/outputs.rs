@@ -2,7 +2,7 @@
 
 use simgap_integrate::exact::lanes::{LANES, LaneSnapshot, Pack};
 use simgap_integrate::exact::{Element, Snapshot};
-use simgap_model::{Model, ModelError, Node, OutputKind, same_pair};
+use simgap_model::{Model, ModelError, Node, OutputKind};
 
 use crate::prepare::Prepared;
 
@@ -144,14 +144,7 @@ pub(crate) fn output_plans(
         let [a, b] = model.resolve_pair(&pair, place)?;
         // A force is positive when a is displaced from b in the positive direction, and so is the
         // force of a member whichever way round it is written.
-        let springs = model
-            .springs
-            .iter()
-            .filter(|s| same_pair(&s.between, &pair));
-        let dampers = model
-            .dampers
-            .iter()
-            .filter(|d| same_pair(&d.between, &pair));
+        let [stiffness, damping] = model.stiffness_and_damping(&pair);
         let joined = elements.iter().enumerate().filter_map(|(i, element)| {
             if !carried[i] {
                 None
@@ -167,8 +160,8 @@ pub(crate) fn output_plans(
             kind: output.kind,
             a,
             b,
-            stiffness: springs.map(|s| s.stiffness).sum(),
-            damping: dampers.map(|d| d.damping).sum(),
+            stiffness,
+            damping,
             elements: joined.collect(),
         });
     }

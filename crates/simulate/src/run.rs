@@ -102,6 +102,12 @@ impl Run {
     pub fn duration_s(&self) -> f64 {
         self.len as f64 * self.time_step_s
     }
+
+    /// Time stamp of its middle, s.
+    #[must_use]
+    pub fn middle_s(&self) -> f64 {
+        self.start_s + 0.5 * self.duration_s()
+    }
 }
 
 /// What an input without a gain must measure.

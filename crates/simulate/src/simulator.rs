@@ -85,11 +85,11 @@ impl Simulator {
                     input_effects.push((placed.effect.kind(), placed.values.clone()));
                 }
                 (Action::Output(map), Location::Channel(channel)) => {
-                    let of = model.outputs.iter().position(|o| &o.channel == channel);
+                    let of = model.output_index(channel);
                     output_maps.extend(of.map(|i| (i, map)));
                 }
                 (Action::Sampling(map), Location::Channel(channel)) => {
-                    let of = model.outputs.iter().position(|o| &o.channel == channel);
+                    let of = model.output_index(channel);
                     sampling_maps.extend(of.map(|i| (i, map)));
                 }
                 (Action::Input(_) | Action::Output(_) | Action::Sampling(_), _) => {}

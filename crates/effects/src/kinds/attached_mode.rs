@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use simgap_model::{Damper, Location, Mass, Model, Spring};
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::sight::is_out_of_sight;
+use crate::sight::is_unseen;
 
 /// A mass that the model lacks rides on one that it has: a panel, a hose, a flexible load, seen at
 /// its host as one more mode.
@@ -178,7 +178,7 @@ impl Effect for AttachedMode {
         let &[_, frequency, ..] = ci95 else {
             return None;
         };
-        is_out_of_sight(frequency)
+        is_unseen(frequency)
             .then_some("a hidden mass whose own mode is out of sight is a heavier host")
     }
 

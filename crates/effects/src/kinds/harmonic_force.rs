@@ -84,11 +84,7 @@ impl Effect for HarmonicForce {
     }
 
     fn line(&self, values: &[f64]) -> Option<Line> {
-        Some(Line {
-            amplitude: values[0],
-            frequency_hz: values[1],
-            phase_rad: values[2],
-        })
+        self.clock().map(|clock| clock.line(values))
     }
 
     fn action(&self, values: &[f64]) -> Action {

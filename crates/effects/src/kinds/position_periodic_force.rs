@@ -44,6 +44,15 @@ const USUAL: i32 = 22;
 /// Longest period over the travel: a smaller part of one is any smooth curve.
 const LONGEST: f64 = 1.5;
 
+/// Small forces with so many periods over the range of the motion.
+fn of_periods(scale: &SiteScale, counts: impl Iterator<Item = f64>) -> Vec<Vec<f64>> {
+    let [low, high] = scale.displacement_range_m;
+    let force = 0.05 * scale.force_n;
+    counts
+        .map(|periods| vec![force, force, (high - low) / periods])
+        .collect()
+}
+
 impl Effect for PositionPeriodicForce {
     fn kind(&self) -> &'static str {
         "position_periodic_force"
@@ -81,21 +90,16 @@ impl Effect for PositionPeriodicForce {
 
     /// The fit finds a period only near by: the starts are close to each other.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let [low, high] = scale.displacement_range_m;
-        let force = 0.05 * scale.force_n;
         let next = |periods: &f64| Some((periods * STEP).min(periods + MOST_STEP));
-        let counts = successors(Some(FEWEST), next).take_while(|periods| *periods < MOST);
-        counts
-            .map(|periods| vec![force, force, (high - low) / periods])
-            .collect()
+        of_periods(
+            scale,
+            successors(Some(FEWEST), next).take_while(|periods| *periods < MOST),
+        )
     }
 
     /// From less than one period to twenty, each a sixth more.
     fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let [low, high] = scale.displacement_range_m;
-        let force = 0.05 * scale.force_n;
-        let of = |k| vec![force, force, (high - low) / (FEWEST * STEP.powi(k))];
-        (0..USUAL).map(of).collect()
+        of_periods(scale, (0..USUAL).map(|k| FEWEST * STEP.powi(k)))
     }
 
     fn action(&self, values: &[f64]) -> Action {

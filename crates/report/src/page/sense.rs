@@ -146,16 +146,7 @@ fn surroundings(at: &Location, input: &ReportInput<'_>) -> Surroundings {
         let here = model.masses.iter().find(|m| &m.name == name);
         out.mass = here.map_or(0.0, |m| m.value);
     }
-    let springs = model
-        .springs
-        .iter()
-        .filter(|s| same_pair(&s.between, &pair));
-    out.stiffness = springs.map(|s| s.stiffness).sum();
-    let dampers = model
-        .dampers
-        .iter()
-        .filter(|d| same_pair(&d.between, &pair));
-    out.damping = dampers.map(|d| d.damping).sum();
+    [out.stiffness, out.damping] = model.stiffness_and_damping(&pair);
     let here = |m: &&PlaceMotion| matches!(&m.at, Location::Between(own) if same_pair(own, &pair));
     for motion in input.motions.iter().filter(here) {
         move_along(&mut out, motion);

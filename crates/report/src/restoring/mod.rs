@@ -286,12 +286,9 @@ fn row(model: &Model, output: &Output, at: &Location, rate: &Mat<f64>) -> Option
                 }
             }
         };
-        for s in model.springs.iter().filter(|s| same_pair(&s.between, pair)) {
-            add(0, s.stiffness);
-        }
-        for d in model.dampers.iter().filter(|d| same_pair(&d.between, pair)) {
-            add(n, d.damping);
-        }
+        let [stiffness, damping] = model.stiffness_and_damping(pair);
+        add(0, stiffness);
+        add(n, damping);
         if let Location::Between(place) = at
             && same_pair(place, pair)
         {
