@@ -299,6 +299,7 @@ mod tests {
                         displacement: 2e-3,
                         velocity: -0.2,
                         time_s: 0.0,
+                        step_s: 0.0,
                     };
                     assert_eq!(force.force(motion), 0.0);
                 }

@@ -218,6 +218,7 @@ fn at_time(time_s: f64, displacement: f64) -> MemberMotion {
         displacement,
         velocity: 0.7,
         time_s,
+        step_s: 0.0,
     }
 }
 

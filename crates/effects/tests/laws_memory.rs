@@ -141,6 +141,7 @@ fn verify_damped_presliding_friction_is_lugre() {
         displacement: way(t),
         velocity: speed(t),
         time_s: t,
+        step_s: 0.0,
     };
     let (mut memory, mut z) = (damped.first_memory(), 0.0);
     let mut worst: f64 = 0.0;

@@ -126,6 +126,65 @@ fn order_a_cubic_spring_is_followed_to_second_order() {
     }
 }
 
+/// A free mass thrown at a damped stop, which pushes from the first touch on and lets go where it would pull:
+/// δ = v₀/ω_d e^(−ζωt) sin ω_d t, ω² = k/m, 2ζω = kτ/m, until δ + τ δ' = 0.
+struct Blow;
+
+impl Blow {
+    const MASS: f64 = 2.0;
+    const STOP: [f64; 4] = [0.01, 1.0, 8e4, 2e-3];
+    const SPEED: f64 = 0.4;
+
+    /// Where it is when it has come back a while ago, thrown from `start`.
+    fn exact(start: f64, end_s: f64) -> f64 {
+        let [at, _, stiffness, tau] = Self::STOP;
+        let freq = (stiffness / Self::MASS).sqrt();
+        let ratio = 0.5 * freq * tau;
+        let damped = freq * (1.0 - ratio * ratio).sqrt();
+        let turn = (tau * damped).atan2(-(1.0 - tau * ratio * freq));
+        let away_s = turn / damped;
+        let decay = Self::SPEED * (-ratio * freq * away_s).exp();
+        let inside = decay / damped * turn.sin();
+        let speed = decay * (turn.cos() - ratio * freq / damped * turn.sin());
+        let touched_s = (at - start) / Self::SPEED;
+        at + inside + speed * (end_s - touched_s - away_s)
+    }
+
+    /// Largest error over all ways in which a step falls on the first touch.
+    fn error(substeps: usize) -> f64 {
+        let text = [
+            "[[mass]]\nname = \"block\"\nvalue = 2.0\n",
+            &output("x", "displacement", "block"),
+        ]
+        .concat();
+        let stop = placed("end_stop", between("block", "ground"), &Self::STOP);
+        let (step, len) = (1e-3, 90);
+        let errors = (0..40).map(|k| {
+            let start = -0.005 - f64::from(k) / 40.0 * Self::SPEED * step;
+            let simulated = predict(
+                &model(&text),
+                std::slice::from_ref(&stop),
+                substeps,
+                &run(step, len, vec![]),
+                &[start, Self::SPEED],
+            );
+            let exact = Self::exact(start, (len - 1) as f64 * step);
+            (simulated[0][len - 1] - exact).abs()
+        });
+        errors.fold(0.0, f64::max)
+    }
+}
+
+/// The force jumps at the touch, wherever that falls within a step: of the largest error over all ways to fall, six halvings
+/// of the step leave what an order of nearly two does.
+#[test]
+fn order_a_damped_blow_is_followed_to_nearly_second_order() {
+    let errors = [1, 2, 4, 8, 16, 32, 64].map(Blow::error);
+    assert!(errors[0] < 3e-5, "{errors:?}");
+    let order = (errors[0] / errors[6]).log2() / 6.0;
+    assert!(order > 1.7, "order {order:.3} of {errors:?}");
+}
+
 /// Dry friction on a spring: every half cycle ends 2 Fc/k lower, until k x is at most Fc.
 #[test]
 fn verify_friction_takes_the_same_from_every_half_cycle_and_then_holds() {

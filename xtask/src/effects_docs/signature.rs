@@ -96,6 +96,7 @@ fn motion(cycles: &[f64], per_cycle: usize, first: f64, last: f64) -> Vec<Member
             displacement: amplitude * (TAU * turns).sin(),
             velocity: amplitude * TAU * freq * (TAU * turns).cos(),
             time_s: turns / freq,
+            step_s: 0.0,
         }
     };
     (0..count).map(at).collect()

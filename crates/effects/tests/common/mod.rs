@@ -99,6 +99,7 @@ pub(crate) fn force(law: &dyn ForceLaw, displacement: f64, velocity: f64) -> f64
         displacement,
         velocity,
         time_s: 0.013,
+        step_s: 0.0,
     })
 }
 

@@ -13,6 +13,9 @@ pub struct MemberMotion {
     pub velocity: f64,
     /// t, s, on the clock of the record.
     pub time_s: f64,
+    /// Length of the steps of the march, s; zero where there are none. Between two of its points a force goes in a straight
+    /// line: one that jumps has to do so over a step, half of it before and half after, to push as much.
+    pub step_s: f64,
 }
 
 /// Where a law that remembers is on its way along a move.

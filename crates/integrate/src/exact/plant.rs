@@ -164,6 +164,7 @@ impl<'a> Plant<'a> {
                 displacement: across(&state[..n], &base[..bases]),
                 velocity: across(&state[n..2 * n], &base[bases..]),
                 time_s,
+                step_s: self.propagator.time_step_s,
             };
             self.from[i] = motion;
             self.smooth[i] = if self.remembers[i] {
@@ -235,6 +236,7 @@ impl<'a> Plant<'a> {
             displacement,
             velocity: self.end_velocity[i],
             time_s,
+            step_s: self.propagator.time_step_s,
         };
         self.memory[i] = self.elements[i]
             .law
@@ -273,6 +275,7 @@ impl<'a> Plant<'a> {
             displacement: displacement - c.displacement[own] * s,
             velocity: velocity - c.velocity[own] * s,
             time_s,
+            step_s: self.propagator.time_step_s,
         };
         self.smooth[i] = if self.remembers[i] {
             let (memory, from) = (self.memory[i], self.from[i]);

@@ -82,6 +82,7 @@ impl<'a> Block<'a> {
             displacement: Pack::ZERO,
             velocity: Pack::ZERO,
             time_s: Pack::ZERO,
+            step_s: Pack::of(|l| sets[l].propagator.time_step_s),
             compliance: [compliance[0][i * m + i], compliance[1][i * m + i]],
             dry_compliance: [compliance[2][i * m + i], compliance[3][i * m + i]],
             start_velocity: Pack::ZERO,

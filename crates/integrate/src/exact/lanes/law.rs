@@ -29,6 +29,8 @@ pub struct ElementLanes {
     pub(super) displacement: Pack,
     pub(super) velocity: Pack,
     pub(super) time_s: Pack,
+    /// Length of the step.
+    pub(super) step_s: Pack,
     /// What a unit of its forces takes from displacement and velocity.
     pub(super) compliance: [Pack; 2],
     pub(super) dry_compliance: [Pack; 2],

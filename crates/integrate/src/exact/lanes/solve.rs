@@ -59,6 +59,7 @@ pub(super) fn solve<S: Simd>(simd: S, laws: &impl LawLanes, element: &mut Elemen
         without: [displacement, velocity],
         compliance: [give, give_velocity],
         time_s: element.time_s,
+        step_s: element.step_s,
         memory: element.memory,
         from: element.from,
     };
@@ -105,22 +106,28 @@ fn dry_forces<S: Simd>(
 }
 
 #[inline(always)]
-fn motion_at(from: &[Pack; 3], lane: usize) -> MemberMotion {
+fn motion_at(from: &[Pack; 3], step_s: &Pack, lane: usize) -> MemberMotion {
     MemberMotion {
         displacement: from[0].0[lane],
         velocity: from[1].0[lane],
         time_s: from[2].0[lane],
+        step_s: step_s.0[lane],
     }
 }
 
 /// Force and memory of eight laws at the end of a move, step by step until the last is there.
 #[inline(always)]
-fn follow(laws: &impl LawLanes, memory: &Pack, from: &[Pack; 3], to: &[Pack; 3]) -> [Pack; 2] {
+fn follow(
+    laws: &impl LawLanes,
+    memory: &Pack,
+    [from, to]: [&[Pack; 3]; 2],
+    step_s: &Pack,
+) -> [Pack; 2] {
     let (mut force, mut memory, mut left) = (Pack::ZERO, *memory, Pack([1.0; LANES]));
     loop {
         let mut is_ahead = false;
         for l in 0..LANES {
-            let (from, to) = (motion_at(from, l), motion_at(to, l));
+            let (from, to) = (motion_at(from, step_s, l), motion_at(to, step_s, l));
             let now = laws.follow(l, memory.0[l], left.0[l], from, to);
             (force.0[l], memory.0[l], left.0[l]) = (now.force, now.memory, now.left);
             is_ahead |= now.left > 0.0;
@@ -140,6 +147,7 @@ struct OwnForce<'a, S: Simd, L> {
     without: [Wide<S>; 2],
     compliance: [Wide<S>; 2],
     time_s: Pack,
+    step_s: Pack,
     memory: Pack,
     from: [Pack; 3],
 }
@@ -156,12 +164,12 @@ impl<S: Simd, L: LawLanes> OwnForce<'_, S, L> {
             self.time_s,
         ];
         if self.remembers {
-            let [force, _] = follow(self.laws, &self.memory, &self.from, &to);
+            let [force, _] = follow(self.laws, &self.memory, [&self.from, &to], &self.step_s);
             return Wide::of(self.simd, &force);
         }
         let mut force = Pack::ZERO;
         for l in 0..LANES {
-            force.0[l] = self.laws.force(l, motion_at(&to, l));
+            force.0[l] = self.laws.force(l, motion_at(&to, &self.step_s, l));
         }
         Wide::of(self.simd, &force)
     }
@@ -202,6 +210,6 @@ fn smooth_force<S: Simd>(
 pub(super) fn remember(laws: &impl LawLanes, element: &mut ElementLanes) {
     let to = [element.displacement, element.end_velocity, element.time_s];
     let (memory, from) = (element.memory, element.from);
-    [_, element.memory] = follow(laws, &memory, &from, &to);
+    [_, element.memory] = follow(laws, &memory, [&from, &to], &element.step_s);
     element.from = to;
 }
