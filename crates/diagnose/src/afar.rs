@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use simgap_effects::{Effect, SiteScale};
 use simgap_estimate::{Base, Candidate, EstimateError, Score, Start, score_outright, score_shapes};
 
-use crate::hypothesis::{Hypothesis, add, name, sort};
+use crate::hypothesis::{Hypothesis, add_scored, name, sort};
 use crate::search::Search;
 
 /// Values tried of each effect at each place.
@@ -68,7 +68,7 @@ impl Search<'_> {
         best_of_all.extend(best(Tried::Clock, FITTED_OF_SWEPT));
         let starts: Vec<Start> = best_of_all
             .into_iter()
-            .map(|score| add(&base.fit.estimate, score.start.clone()))
+            .map(|score| add_scored(&base.fit.estimate, score.clone()))
             .collect();
         let mut fitted = self.fit_all(&starts, linear)?;
         let promising: Vec<Start> = fitted

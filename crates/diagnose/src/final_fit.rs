@@ -1,13 +1,13 @@
 //! The answer, fitted to all samples.
 
-use simgap_effects::Family;
-use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit};
+use simgap_effects::{Family, Placed};
+use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states};
 
 /// Fits a set that was found on an excerpt to whole records.
 ///
-/// Where they begin is not known then, and is taken from the model as given. Where the excerpt is all there is, the set
-/// has found where they begin: with play, sticking or stops another start may end in another valley, and the better
-/// one counts.
+/// Where they begin is not known then, and is taken from the model as given, unless the set itself is all that shows it.
+/// Where the excerpt is all there is, the set has found where they begin: with play, sticking or stops another start may
+/// end in another valley, and the better one counts.
 ///
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated from either start.
@@ -22,8 +22,23 @@ pub(crate) fn fit_to_all(
     let is_all = runs.all(|(part, run)| part.len == run.len);
     let mut effects = found.effects.iter();
     let may_part = effects.any(|placed| placed.effect.family() == Family::Force);
+    let initial = if found
+        .effects
+        .iter()
+        .any(|placed| train.shows_travel(placed))
+    {
+        let all: Vec<Placed> = found
+            .effects
+            .iter()
+            .chain(&found.nominal)
+            .cloned()
+            .collect();
+        fit_initial_states(train, &all, weights)?.estimate.initial
+    } else {
+        as_given.to_vec()
+    };
     let from_given = Start {
-        initial: as_given.to_vec(),
+        initial,
         ..found.clone()
     };
     let from_given = fit(train, &from_given, weights);

@@ -82,6 +82,13 @@ pub(crate) fn add(start: &Start, effect: Placed) -> Start {
     next
 }
 
+/// [`add`] of what a score starts from.
+pub(crate) fn add_scored(start: &Start, score: Score) -> Start {
+    let mut next = add(start, score.start);
+    next.initial = score.initial.unwrap_or(next.initial);
+    next
+}
+
 /// A start without one of its effects. A nominal parameter gets its prior back, unless nominal
 /// parameters are held exactly.
 pub(crate) fn remove(start: &Start, index: usize) -> Start {
@@ -141,5 +148,6 @@ pub(crate) fn prior_score(base: &Hypothesis, candidate: &Candidate) -> Option<Sc
         gain: 2.0 * pull_of(placed),
         share: 0.0,
         start: placed.clone(),
+        initial: None,
     })
 }

@@ -10,7 +10,7 @@ use simgap_model::{GROUND, Location};
 
 use crate::difference::{identified, replacement};
 use crate::evidence::{is_nominal, probabilities};
-use crate::hypothesis::{Hypothesis, add, name, remove, sort, unique};
+use crate::hypothesis::{Hypothesis, add_scored, name, remove, sort, unique};
 use crate::search::Search;
 use crate::verdict::{INDISTINGUISHABLE, Judged, Swap};
 
@@ -48,7 +48,7 @@ impl Search<'_> {
                 let shapes = candidate.effect.grown_from(kind, &limit.values, scale);
                 let best = score_outright(linear, candidate, &shapes).unwrap_or_default();
                 let best = best.into_iter().take(STARTS);
-                best.map(|score| add(&base.fit.estimate, score.start))
+                best.map(|score| add_scored(&base.fit.estimate, score))
                     .collect::<Vec<Start>>()
             })
             .collect::<Vec<_>>();

@@ -15,7 +15,7 @@ use simgap_model::Location;
 
 use crate::accuracy::accuracy;
 use crate::evidence::{effective_samples, evidence, freedom};
-use crate::hypothesis::{Hypothesis, add, name, prior_score, pull, replace, sort, unique};
+use crate::hypothesis::{Hypothesis, add_scored, name, prior_score, pull, replace, sort, unique};
 use crate::input_noise::{InputNoise, input_noise};
 use crate::out_of_sight::{spring_to_ground, without_limits};
 
@@ -156,7 +156,7 @@ impl<'a> Search<'a> {
         let starts: Vec<Start> = self
             .pick(scores, most, base.effects().is_empty())
             .into_iter()
-            .map(|score| add(&base.fit.estimate, score.start))
+            .map(|score| add_scored(&base.fit.estimate, score))
             .collect();
         self.fit_all(&starts, linear)
     }

@@ -3,7 +3,7 @@
 use simgap_integrate::exact::ForceLaw;
 use simgap_model::{Location, Model};
 
-use crate::{Line, SignalMap};
+use crate::{Line, SignalMap, Wave};
 
 /// Which part of the world an effect belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -397,6 +397,11 @@ pub trait Effect: Sync + Send {
 
     /// The clock of an effect that has one of its own.
     fn clock(&self) -> Option<Clock> {
+        None
+    }
+
+    /// What makes an effect a wave along the travel.
+    fn wave(&self) -> Option<Wave> {
         None
     }
 

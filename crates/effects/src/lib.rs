@@ -30,6 +30,7 @@ mod line;
 mod place;
 mod sight;
 mod signal_map;
+mod wave;
 
 pub use catalogue::{catalogue, find};
 pub use effect::{
@@ -42,3 +43,4 @@ pub use line::Line;
 pub use place::{Placed, same_place, sites};
 pub use sight::is_unseen;
 pub use signal_map::{Sampled, SignalMap};
+pub use wave::Wave;

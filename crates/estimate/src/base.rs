@@ -7,7 +7,7 @@ use faer::{Mat, Side};
 use simgap_effects::Placed;
 use simgap_simulate::{Job, predict_all};
 
-use crate::fit::{Known, Merit, fit_with, state_scale};
+use crate::fit::{Known, Merit, fit_with};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, Signals, linearise};
 use crate::normal::normal_equations;
@@ -77,7 +77,7 @@ pub fn linearise_at<'a>(
         nominal_prior: weights.nominal_prior,
         shared_held: false,
     };
-    let layout = Layout::new(&fit.estimate, &problem.runs, &state_scale(problem), freedom);
+    let layout = Layout::new(&fit.estimate, problem, freedom);
     let theta = layout.pack(&fit.estimate);
     let at = linearise(problem, &layout, &theta)?;
     let merit = Merit::new(problem, weights);

@@ -92,7 +92,7 @@ pub(crate) fn fit_with(
         nominal_prior: weights.nominal_prior,
         shared_held,
     };
-    let layout = Layout::new(start, &problem.runs, &state_scale(problem), freedom);
+    let layout = Layout::new(start, problem, freedom);
     let merit = Merit::new(problem, weights);
     let mut theta = layout.pack(start);
     layout.make_physical(&mut theta);

@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use simgap_effects::{Family, Placed};
 use simgap_simulate::Simulator;
 
+use crate::drift;
 use crate::fit::fit_with;
 use crate::{EstimateError, Fit, Problem, Start, Weights};
 
@@ -25,8 +26,11 @@ pub fn fit_initial_states(
     let all = of_file.iter().chain(effects).cloned();
     let (own, given): (Vec<Placed>, Vec<Placed>) = all.partition(|p| !p.own_places().is_empty());
     fixed.given = given;
-    let initial = problem.initial_guess();
+    let mut initial = problem.initial_guess();
     if own.is_empty() {
+        for (run, state) in fixed.runs.iter().zip(&mut initial) {
+            *state = placed(&fixed.with_runs(vec![run.clone()]), state, weights)?;
+        }
         let mut best = states_from(&fixed, initial.clone(), weights)?;
         if !may_part(&fixed.given) {
             return Ok(best);
@@ -77,6 +81,38 @@ pub fn fit_initial_states_from(
     let mut fixed = problem.with_runs(problem.runs.clone());
     fixed.given.extend(effects.iter().cloned());
     states_from(&fixed, initial, weights)
+}
+
+/// An initial state of one run that begins at the right place of every wave whose travel nothing else shows: the best of
+/// fits from all over a period.
+fn placed(alone: &Problem, state: &[f64], weights: &Weights) -> Result<Vec<f64>, EstimateError> {
+    let mut states = drift::places(alone, alone.given.iter(), state.to_vec());
+    if states.len() == 1 {
+        return Ok(states.swap_remove(0));
+    }
+    let fits = states
+        .into_iter()
+        .map(|state| states_from(alone, vec![state], weights));
+    let best = best_fit(fits)?;
+    let found = best.and_then(|fit| fit.estimate.initial.into_iter().next());
+    Ok(found.unwrap_or_else(|| state.to_vec()))
+}
+
+/// The fit with the least objective, the first of equals.
+fn best_fit(
+    fits: impl Iterator<Item = Result<Fit, EstimateError>>,
+) -> Result<Option<Fit>, EstimateError> {
+    let mut best: Option<Fit> = None;
+    for fit in fits {
+        let fit = fit?;
+        if best
+            .as_ref()
+            .is_none_or(|known| fit.objective < known.objective)
+        {
+            best = Some(fit);
+        }
+    }
+    Ok(best)
 }
 
 /// Whether motions that begin alike may part: then the objective of an initial state has many valleys.
@@ -175,22 +211,19 @@ fn best_of(
             })
             .collect();
     }
-    let mut best: Option<Fit> = None;
-    for effects in starts {
+    let states = drift::places(alone, alone.given.iter().chain(own), state.clone());
+    let from = states
+        .iter()
+        .flat_map(|state| starts.iter().map(move |effects| (effects, state)));
+    let fits = from.map(|(effects, state)| {
         let start = Start {
-            effects,
+            effects: effects.clone(),
             nominal: vec![],
             initial: vec![state.clone()],
         };
-        let fit = fit_with(alone, &start, weights, true, None)?;
-        if best
-            .as_ref()
-            .is_none_or(|known| fit.objective < known.objective)
-        {
-            best = Some(fit);
-        }
-    }
-    best.map_or_else(|| states_from(alone, vec![state], weights), Ok)
+        fit_with(alone, &start, weights, true, None)
+    });
+    best_fit(fits)?.map_or_else(|| states_from(alone, vec![state], weights), Ok)
 }
 
 /// With the values that a record has of its own where they mean nothing.

@@ -6,6 +6,9 @@ use simgap_effects::{Effect, Parameter, Placed};
 use simgap_model::Location;
 use simgap_simulate::Run;
 
+use crate::Problem;
+use crate::fit::state_scale;
+
 /// A catalogue entry at a place, without values.
 #[derive(Clone)]
 pub struct Candidate {
@@ -77,12 +80,8 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    pub(crate) fn new(
-        start: &Start,
-        runs: &[Run],
-        state_scale: &[f64],
-        freedom: Freedom,
-    ) -> Layout {
+    pub(crate) fn new(start: &Start, problem: &Problem, freedom: Freedom) -> Layout {
+        let (runs, state_scale) = (&problem.runs, state_scale(problem));
         let places = |own: bool| -> Vec<(usize, usize)> {
             let effects = start.effects.iter().enumerate();
             effects
@@ -115,11 +114,16 @@ impl Layout {
                 values
             })
             .collect();
+        let turns = |placed: &Placed| problem.drift(placed.effect, &placed.at);
         for &(e, i) in &layout.shared_values.clone() {
             let value = physical[e][i];
             let parameter = &start.effects[e].effect.parameters()[i];
             layout.push_parameter(parameter, value, f64::INFINITY);
-            if freedom.shared_held || start.effects[e].effect.is_chosen(i) {
+            let placed = &start.effects[e];
+            if freedom.shared_held
+                || placed.effect.is_chosen(i)
+                || turns(placed).is_some_and(|drift| drift.wave.cosine == i)
+            {
                 layout.hold_last(value);
             }
         }
@@ -139,7 +143,7 @@ impl Layout {
                 let parameter = &start.effects[e].effect.parameters()[i];
                 layout.push_parameter(parameter, value, f64::INFINITY);
             }
-            for &scale in state_scale {
+            for &scale in &state_scale {
                 layout.push(scale, [f64::NEG_INFINITY, f64::INFINITY]);
             }
         }

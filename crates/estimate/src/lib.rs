@@ -65,6 +65,7 @@
 //! ```
 
 mod base;
+mod drift;
 mod fit;
 mod information;
 mod initial;

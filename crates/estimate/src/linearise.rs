@@ -416,7 +416,7 @@ at = "block"
                 nominal: vec![placed("stiffness_error", 1.0)],
                 initial: vec![vec![0.003, 0.1]],
             };
-            let layout = Layout::new(&start, &problem.runs, &[1e-3, 0.1], freedom);
+            let layout = Layout::new(&start, &problem, freedom);
             let theta = layout.pack(&start);
             let found = linearise(&problem, &layout, &theta).unwrap();
             for (entry, column) in found.columns[0].iter().enumerate().skip(1) {

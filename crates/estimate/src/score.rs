@@ -13,9 +13,10 @@
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
-use simgap_effects::{Clock, Effect, Placed, SiteScale};
+use simgap_effects::{Clock, Effect, Placed, SiteScale, Wave};
 
 use crate::base::{Base, InCommon, Regressor, Trial};
+use crate::drift::Drift;
 use crate::{Candidate, EstimateError};
 
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
@@ -32,6 +33,8 @@ pub struct Score {
     pub share: f64,
     /// The effect with the size the data ask for, inside its physical bounds.
     pub start: Placed,
+    /// Initial states with which it brings that, where those of the fit do not do.
+    pub initial: Option<Vec<Vec<f64>>>,
 }
 
 /// Scores one candidate from each of its starting shapes, best first. Shapes that would need a
@@ -153,6 +156,9 @@ impl Base<'_> {
         let everywhere: Vec<Regressor> = everywhere.collect();
         match way(candidate, shape) {
             Way::BySize(sizes) => {
+                if let Some(drift) = self.problem.drift(candidate.effect, &candidate.at) {
+                    return self.score_drift(candidate, shape, &drift, in_common, own);
+                }
                 let solution = self.amplitudes(in_common, &everywhere)?;
                 self.score_sizes(candidate, shape, &sizes, solution)
             }
@@ -196,7 +202,24 @@ impl Base<'_> {
             gain: -0.5 * self.independent_samples * (1.0 - share).ln(),
             share,
             start: Placed::new(candidate.effect, candidate.at.clone(), values),
+            initial: None,
         }
+    }
+
+    /// What a sine and a cosine of its own for each run are of the trials, and the energy they explain.
+    fn turns(&self, in_common: &InCommon, phases: Range<usize>) -> Option<(Vec<[f64; 2]>, f64)> {
+        let runs = self.problem.runs.len();
+        let columns = phases.flat_map(|trial| {
+            let of_run = move |run| Regressor {
+                trial,
+                run: Some(run),
+            };
+            (0..runs).map(of_run)
+        });
+        let (parts, energy) = self.amplitudes(in_common, &columns.collect::<Vec<_>>())?;
+        let (sines, cosines) = parts.split_at(runs);
+        let each = sines.iter().zip(cosines).map(|(s, c)| [*s, *c]);
+        Some((each.collect(), energy))
     }
 
     /// An effect with a clock: a sine and a cosine of its own for each run.
@@ -208,17 +231,8 @@ impl Base<'_> {
         in_common: &InCommon,
         phases: Range<usize>,
     ) -> Option<Score> {
-        let runs = self.problem.runs.len();
-        let columns = phases.flat_map(|trial| {
-            let of_run = move |run| Regressor {
-                trial,
-                run: Some(run),
-            };
-            (0..runs).map(of_run)
-        });
-        let (parts, energy) = self.amplitudes(in_common, &columns.collect::<Vec<_>>())?;
-        let size = |run: usize| parts[run].hypot(parts[runs + run]);
-        let mean = ((0..runs).map(|r| size(r).powi(2)).sum::<f64>() / runs as f64).sqrt();
+        let (parts, energy) = self.turns(in_common, phases)?;
+        let mean = mean_size(&parts);
         let mut values = shape.to_vec();
         values[clock.amplitude] *= mean;
         if !values.iter().all(|value| value.is_finite()) || mean == 0.0 {
@@ -226,16 +240,49 @@ impl Base<'_> {
         }
         let mut score = self.scored(candidate, values, energy);
         let own = score.start.own_places();
-        score.start.of_record = (0..runs)
-            .map(|run| {
-                let phase = parts[runs + run].atan2(parts[run]);
-                let value = |place: &usize| match *place {
-                    place if place == clock.phase => phase,
-                    place => shape[place],
-                };
-                own.iter().map(value).collect()
-            })
-            .collect();
+        let of_run = |[sine, cosine]: &[f64; 2]| {
+            let phase = cosine.atan2(*sine);
+            let value = |place: &usize| match *place {
+                place if place == clock.phase => phase,
+                place => shape[place],
+            };
+            own.iter().map(value).collect()
+        };
+        score.start.of_record = parts.iter().map(of_run).collect();
         Some(score)
     }
+
+    /// A wave along a travel that each run begins where it does: one sine, and the places.
+    fn score_drift(
+        &self,
+        candidate: &Candidate,
+        shape: &[f64],
+        drift: &Drift,
+        in_common: &InCommon,
+        phases: Range<usize>,
+    ) -> Option<Score> {
+        let (mut parts, energy) = self.turns(in_common, phases)?;
+        let Wave { sine, cosine, .. } = drift.wave;
+        for part in &mut parts {
+            *part = [part[0] * shape[sine], part[1] * shape[cosine]];
+        }
+        let mut values = shape.to_vec();
+        (values[sine], values[cosine]) = (mean_size(&parts), 0.0);
+        let is_found = values[sine].is_finite() && values[sine] > 0.0;
+        is_found.then(|| {
+            let begin = parts.iter().zip(&self.fit.estimate.initial);
+            let begin = begin.map(|([s, c], state)| drift.ahead(state, &values, c.atan2(*s)));
+            let initial = Some(begin.collect());
+            Score {
+                initial,
+                ..self.scored(candidate, values.clone(), energy)
+            }
+        })
+    }
+}
+
+/// Root mean square over the runs of what they hold of a sine and a cosine together.
+fn mean_size(parts: &[[f64; 2]]) -> f64 {
+    let squares: f64 = parts.iter().flatten().map(|part| part * part).sum();
+    (squares / parts.len().max(1) as f64).sqrt()
 }

@@ -3,9 +3,12 @@
 
 mod support;
 
+use std::f64::consts::TAU;
+
 use simgap_effects::SiteScale;
 use simgap_estimate::{Start, Weights, fit, fit_initial_states, linearise_at, score, score_shapes};
-use simgap_model::Location;
+use simgap_model::{Location, Model};
+use simgap_simulate::Run;
 use support::{
     Normal, OSCILLATOR, between, candidate, drive, model, noisy, placed, problem, scale, start,
     truth,
@@ -150,4 +153,123 @@ fn verify_a_sweep_finds_a_swinging_stiffness() {
     let lines = candidate.effect.starts(&scale);
     let by_line = lines.iter().any(|s| (s[1] - freq).abs() < 0.5 * resolution);
     assert!(!by_line, "a line would have told");
+}
+
+/// A slide whose speed alone is measured, and a force that repeats along its way.
+const SLIDE: &str = r#"schema = "simgap-model/1"
+name = "slide"
+[[mass]]
+name = "slide"
+value = 2.0
+[[damper]]
+name = "guide"
+between = ["slide", "ground"]
+damping = 40.0
+[[input]]
+channel = "u"
+kind = "force"
+at = "slide"
+[[output]]
+channel = "v"
+kind = "velocity"
+at = "slide"
+"#;
+/// Size, N, and period, m, of the force.
+const WAVE: [f64; 2] = [1.0, 0.11];
+/// Where the records begin, m.
+const BEGIN: [f64; 2] = [0.0, 0.041];
+
+fn along(slide: &Model) -> Vec<Run> {
+    let cogging = [placed(
+        "position_periodic_force",
+        between("slide", "ground"),
+        &[WAVE[0], 0.0, WAVE[1]],
+    )];
+    let run = |x0: f64| truth(slide, &cogging, drive(0.005, 1500, 60.0), 0.005, &[x0, 0.2]);
+    BEGIN.map(run).to_vec()
+}
+
+/// With the force given, the place that a record begins at is found to a period, wherever it is.
+#[test]
+fn verify_a_record_is_placed_along_a_travel_that_only_a_wave_shows() {
+    let slide = model(SLIDE);
+    let mut problem = problem(&slide, along(&slide).swap_remove(1));
+    for phase in [0.0_f64, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0] {
+        let place = between("slide", "ground");
+        let values = [WAVE[0] * phase.cos(), WAVE[0] * phase.sin(), WAVE[1]];
+        problem.given = vec![placed("position_periodic_force", place, &values)];
+        let fit = fit_initial_states(&problem, &[], &Weights::independent(1)).unwrap();
+        let off = fit.estimate.initial[0][0] + phase / TAU * WAVE[1] - BEGIN[1];
+        let turns = off / WAVE[1];
+        assert!((turns - turns.round()).abs() < 1e-4, "{turns} for {phase}");
+    }
+}
+
+/// Records that begin at places of their own share the size and the period of the force: the score finds all of it
+/// before a fit, and where the travel is counted from is not asked.
+#[test]
+fn verify_a_wave_is_found_where_each_record_begins_elsewhere() {
+    let slide = model(SLIDE);
+    let mut problem = problem(&slide, along(&slide).swap_remove(0));
+    problem.runs = along(&slide);
+    let weights = Weights::independent(1);
+    let base = fit_initial_states(&problem, &[], &weights).unwrap();
+    let linear = linearise_at(&problem, &base, &weights).unwrap();
+    let wave = candidate("position_periodic_force", between("slide", "ground"));
+    let shape = [0.3, 0.3, WAVE[1]];
+    let score = score_shapes(&linear, &wave, &[shape.to_vec()])
+        .unwrap()
+        .swap_remove(0);
+    let apart = |initial: &[Vec<f64>]| {
+        let turns = (initial[1][0] - initial[0][0] - (BEGIN[1] - BEGIN[0])) / WAVE[1];
+        (turns - turns.round()).abs()
+    };
+    let begin = score.initial.unwrap();
+    assert!(apart(&begin) < 0.1, "{begin:?}");
+    assert!(
+        (score.start.values[0] / WAVE[0] - 1.0).abs() < 0.2,
+        "{:?}",
+        score.start.values
+    );
+    let from = Start {
+        effects: vec![score.start],
+        nominal: vec![],
+        initial: begin,
+    };
+    let found = fit(&problem, &from, &weights).unwrap();
+    let values = &found.estimate.effects[0].values;
+    let size = values[0].hypot(values[1]);
+    assert!((size / WAVE[0] - 1.0).abs() < 1e-3 && (values[2] / WAVE[1] - 1.0).abs() < 1e-4);
+    assert!(apart(&found.estimate.initial) < 1e-3);
+    // Known but for where the travel begins: a size and a period with intervals, and a turn that is none.
+    let spread = |i: usize| found.intervals[0][i].ci95[1] - found.intervals[0][i].ci95[0];
+    assert!(spread(0) < 0.01 * WAVE[0] && spread(1) == 0.0 && spread(2) < 0.01 * WAVE[1]);
+}
+
+/// A mass that runs into a damped stop, measured by its acceleration: the force jumps at every blow. A march that does not
+/// know when within a step would move in stairs as the stop is moved, and a fit stand still on one.
+#[test]
+fn verify_a_damped_stop_is_found_through_all_its_blows() {
+    let model = model(&OSCILLATOR.replace("kind = \"displacement\"", "kind = \"acceleration\""));
+    let at = between("block", "ground");
+    let values = [0.02, 1.0, 8e4, 2e-3];
+    let stop = [placed("end_stop", at.clone(), &values)];
+    let run = truth(&model, &stop, drive(0.002, 4000, 30.0), 0.002, &[0.0; 2]);
+    let noise = 0.05;
+    let problem = problem(&model, noisy(&run, noise, 11));
+    for off in [-0.03, -0.02, -0.01, 0.01, 0.02, 0.03] {
+        let from = [
+            values[0] * (1.0 + off),
+            values[1],
+            values[2] * (1.0 - off),
+            values[3],
+        ];
+        let from = placed("end_stop", at.clone(), &from);
+        let from = start(vec![from], vec![], &[0.0; 2]);
+        let found = fit(&problem, &from, &Weights::independent(1)).unwrap();
+        let left = found.variance[0] / noise.powi(2);
+        assert!((left - 1.0).abs() < 0.1, "{left} from {off}");
+        let gap = found.estimate.effects[0].values[0];
+        assert!((gap / values[0] - 1.0).abs() < 1e-4, "{gap} from {off}");
+    }
 }

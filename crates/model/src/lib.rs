@@ -46,6 +46,7 @@ mod matrices;
 mod model;
 mod modes;
 mod parts;
+mod travel;
 
 pub use error::ModelError;
 pub use file::SCHEMA;

@@ -6,6 +6,7 @@ use std::iter::successors;
 use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
+use crate::Wave;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// A force that repeats along the travel: cogging, a screw, a row of teeth.
@@ -100,6 +101,14 @@ impl Effect for PositionPeriodicForce {
     /// From less than one period to twenty, each a sixth more.
     fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         of_periods(scale, (0..USUAL).map(|k| FEWEST * STEP.powi(k)))
+    }
+
+    fn wave(&self) -> Option<Wave> {
+        Some(Wave {
+            sine: 0,
+            cosine: 1,
+            period: 2,
+        })
     }
 
     fn action(&self, values: &[f64]) -> Action {
