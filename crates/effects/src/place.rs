@@ -55,7 +55,7 @@ impl Placed {
             .collect()
     }
 
-    /// Gives an entry of a model file its meaning.
+    /// Gives an entry of a model file its meaning. Of several limits those that are left out are never reached.
     ///
     /// # Errors
     /// [`EffectError`] for an unknown kind or parameter, a missing parameter, a value outside its
@@ -81,10 +81,20 @@ impl Placed {
                     .join(", "),
             });
         }
+        let mut limits = parameters
+            .iter()
+            .filter(|p| p.neutral.is_some_and(f64::is_infinite));
+        let has_limit = limits.any(|limit| entry.parameters.contains_key(limit.name));
         let mut values = Vec::with_capacity(parameters.len());
         for parameter in parameters {
             let given = entry.parameters.get(parameter.name).copied();
-            let value = given.or_else(|| effect.left_out(parameter.name));
+            let unreached = || {
+                let limit = parameter.neutral.filter(|n| n.is_infinite() && has_limit)?;
+                Some(limit.signum() * f64::MAX)
+            };
+            let value = given
+                .or_else(|| effect.left_out(parameter.name))
+                .or_else(unreached);
             let value = value.ok_or_else(|| EffectError::MissingParameter {
                 kind: entry.kind.clone(),
                 parameter: parameter.name,

@@ -93,6 +93,7 @@ fn regress_messages() {
         // A parameter is missing.
         "kind = \"coulomb_friction\"\nbetween = [\"load\", \"ground\"]",
         "kind = \"stribeck_friction\"\nbetween = [\"load\", \"ground\"]\nfriction_force_n = 1.0",
+        "kind = \"clipping\"\nchannel = \"y\"",
         // A parameter the effect does not have.
         "kind = \"coulomb_friction\"\nbetween = [\"load\", \"ground\"]\nfriction_n = 1.0",
         // Outside the physical range, just and far.
@@ -123,6 +124,13 @@ fn verify_what_a_model_file_may_leave_out() {
         "kind = \"end_stop\"\n{at}\nupper_stop_m = 0.1\nlower_stop_m = 0.2\ncontact_stiffness_n_per_m = 3e4"
     ));
     assert_eq!(found, [0.1, 0.2, 3e4, 0.0]);
+    // A stop on one side, a sensor that saturates on one.
+    let found = read(&format!(
+        "kind = \"end_stop\"\n{at}\nlower_stop_m = 0.2\ncontact_stiffness_n_per_m = 3e4"
+    ));
+    assert_eq!(found, [f64::MAX, 0.2, 3e4, 0.0]);
+    let found = read("kind = \"clipping\"\nchannel = \"y\"\nupper_level = 0.3");
+    assert_eq!(found, [0.3, f64::MIN]);
     let found = read(&format!(
         "kind = \"bilinear_stiffness\"\n{at}\nstiffness_change_n_per_m = 50.0"
     ));
