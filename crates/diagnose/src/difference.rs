@@ -34,6 +34,8 @@ const DOES: f64 = 0.1;
 /// An effect without which the squared discrepancy of a channel would be more than twice as large is seen, even
 /// where only its size and its state at the start together are.
 pub(crate) const SEEN: f64 = 0.5;
+/// Multiple of what a set leaves, rms, that the noise of the inputs may be of it where it is the truth.
+const DRIVES: f64 = 3.0;
 /// Smallest part of the gap of the model as given, rms, that an effect must close in a channel.
 const MATTERS: f64 = 0.015;
 
@@ -43,11 +45,20 @@ const MATTERS: f64 = 0.015;
 pub(crate) fn relevant(search: &Search<'_>, larger: &Fit, smaller: &Fit) -> bool {
     let std = search.problem.output_std().into_iter();
     let of_samples = faults_of_samples(larger) > faults_of_samples(smaller);
-    let least = std.zip(&search.input_noise).map(|(std, driven)| {
-        let driven = if of_samples { 0.0 } else { driven.rms() };
-        driven.max(MOVES * std)
-    });
+    let least = std
+        .zip(driven(search, &larger.variance))
+        .map(|(std, driven)| {
+            let driven = if of_samples { 0.0 } else { driven };
+            driven.max(MOVES * std)
+        });
     moves(larger, smaller, least)
+}
+
+/// rms of what the noise of the inputs does to each channel, where a set leaves so much of it: noise that drives the
+/// nominal plant far does less where little is left, as what wanders without a spring is held by one that the model lacks.
+fn driven(search: &Search<'_>, left: &[f64]) -> impl Iterator<Item = f64> {
+    let channels = search.input_noise.iter().zip(left);
+    channels.map(|(driven, left)| driven.rms().min(DRIVES * left.sqrt()))
 }
 
 fn faults_of_samples(fit: &Fit) -> usize {
@@ -174,9 +185,10 @@ pub(crate) fn level(search: &Search<'_>, set: &Hypothesis, rival: &mut Hypothesi
     };
     let std = search.problem.output_std();
     // A lag that is not there smooths the noise of the inputs on its way to the outputs.
-    let off = search.accuracy.iter().zip(&search.input_noise).zip(std);
-    let off = off.map(|((accuracy, driven), std)| accuracy.max(least * std).hypot(driven.rms()));
     let variances = set.fit.variance.iter().zip(&rival.fit.variance);
+    let left: Vec<f64> = variances.clone().map(|(own, its)| own.min(*its)).collect();
+    let off = search.accuracy.iter().zip(driven(search, &left)).zip(std);
+    let off = off.map(|((accuracy, driven), std)| accuracy.max(least * std).hypot(driven));
     let mut channels = variances.zip(off);
     if channels.all(|((own, its), off)| (own - its).abs().sqrt() < off) {
         let misfit = |set: &Hypothesis| set.fit.objective - pull(&set.fit.estimate);

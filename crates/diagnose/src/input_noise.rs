@@ -125,7 +125,8 @@ pub(crate) fn input_noise(
 enum Seen {
     /// Its standard deviation; zero where there is nothing but rounding.
     Noise(f64),
-    /// What looks like noise is excitation, and the noise is at most that.
+    /// What looks like noise is excitation, and the noise is at most that; none where an input stands still, which
+    /// says nothing of one that moves.
     Hidden { most: f64 },
 }
 
@@ -134,6 +135,9 @@ fn seen(run: &Run) -> Vec<Seen> {
 }
 
 fn noise_of(input: &[f64]) -> Seen {
+    if input.windows(2).all(|pair| pair[0] == pair[1]) {
+        return Seen::Hidden { most: 0.0 };
+    }
     let mean = input.iter().sum::<f64>() / input.len().max(1) as f64;
     let square: f64 = input.iter().map(|u| (u - mean).powi(2)).sum();
     let std = (square / input.len().max(1) as f64).sqrt();
@@ -279,6 +283,9 @@ mod tests {
         let seen = found(noisy.inputs[0].clone());
         assert_eq!(alone.rms(), 0.0);
         assert!((beside.rms() / seen - 1.0).abs() < 0.3, "{beside:?}");
+        // A run that is let go, its drive at rest, does not say that the drive has no noise.
+        let with_free = driven("displacement", white(10.0), &[noisy, run(vec![0.0; ROWS])]);
+        assert_eq!(with_free.rms(), beside.rms());
     }
 
     /// The acceleration of a mass follows the force on it at once: (w/m)² of r looks white.
@@ -290,6 +297,8 @@ mod tests {
         let straight_on = (std / 2.0_f64).powi(2);
         assert!((noise.white / straight_on - 1.0).abs() < 0.1, "{noise:?}");
         assert!(noise.beyond(2.0 * straight_on) < 0.3 * straight_on);
-        assert_eq!(noise.beyond(0.0), noise.most);
+        // A set that leaves half of it has half of it still to come.
+        let half = noise.beyond(0.5 * noise.white) - noise.beyond(noise.white);
+        assert!((half / (0.5 * noise.white) - 1.0).abs() < 1e-9, "{noise:?}");
     }
 }

@@ -80,6 +80,7 @@ mod out_of_sight;
 mod outcome;
 mod parity;
 mod pipeline;
+mod refuted;
 mod remainder;
 mod rounding;
 mod search;

@@ -18,6 +18,7 @@ use crate::input_noise::input_noise;
 use crate::locate::Located;
 use crate::out_of_sight::{add_rivals_out_of_sight, adjusted};
 use crate::outcome::{corrected_model, series};
+use crate::refuted::is_refuted;
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
 use crate::verdict::{Judged, earned, judge, prune, simplest};
@@ -35,10 +36,6 @@ const FINALISTS: usize = 6;
 const SINGLES: usize = 12;
 /// Swaps with a better rival before the set is taken as it stands.
 const MOST_SWAPS: usize = 3;
-
-/// A set that leaves this many times what re-estimated parameters leave of the check records is
-/// refuted by them.
-const HARMS: f64 = 1.05;
 
 /// What is asked.
 pub struct Request<'a> {
@@ -157,10 +154,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         between.as_ref().unwrap_or(gap).over_all_noise()
     };
     let mut judged_by = between(&answer, &placed, &predictions, &gap);
-    let harms = |gap: &Gap| gap.corrected > HARMS * gap.recalibrated;
     // A law that fails on the check records, or another motion of the same law?
     let fails = |answer: &Answer| {
-        harms(&judged_by)
+        is_refuted(&judged_by)
             || unexplained::leaves_much(&judged_by)
             || unexplained::is_poor_stand_in(answer, &judged_by)
     };
@@ -171,7 +167,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         None
     };
     answer.follows_anew = anew.is_some();
-    if harms(&judged_by) && answer.names_more_than_parameters() && !answer.follows_anew {
+    if is_refuted(&judged_by) && answer.names_more_than_parameters() && !answer.follows_anew {
         // On records it was not fitted to, the set is worse than parameters alone.
         let singles = std::mem::take(&mut answer.singles);
         answer = search(request, &train, fits, Scope::Parameters, progress)?;

@@ -205,11 +205,18 @@ pub(crate) fn particulars(
     let gap = &diagnosis.gap;
     let mut out = Vec::new();
     match diagnosis.verdict.status {
-        Status::None => out.push(format!(
-            "The model as given is off by {}; the noise alone leaves {}.",
-            ratio(gap.nominal),
-            ratio(gap.noise_floor)
-        )),
+        Status::None => {
+            let driven = if gap.input_noise > gap.noise_floor {
+                format!(", that of the inputs about {}", ratio(gap.input_noise))
+            } else {
+                String::new()
+            };
+            out.push(format!(
+                "The model as given is off by {}; the noise alone leaves {}{driven}.",
+                ratio(gap.nominal),
+                ratio(gap.noise_floor),
+            ));
+        }
         Status::Unknown => {
             let said = diagnosis.verdict.description.iter();
             out.extend(said.map(|d| sentence(&plain(d))));
