@@ -1,13 +1,13 @@
 //! What one record shows and another does not, and what several sensors show of one force.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
 
 use common::{diagnosed, ground, named, placed, plant, record};
 use simgap_diagnose::{Outcome, Request, Status, diagnose};
 use simgap_effects::Placed;
-use simgap_model::Location;
+use simgap_model::{Location, Model};
 use simgap_record::{Channel, Record};
 
 const ROWS: usize = 2500;
@@ -97,4 +97,52 @@ fn verify_spikes_of_one_record_are_seen_beside_another_fault() {
             both.map(|(kind, channel)| (kind.to_string(), at(channel)))
         );
     }
+}
+
+/// A slide with nothing that holds it: with the noise of its drive, a model of it wanders.
+const SLIDE: &str = r#"schema = "simgap-model/1"
+name = "slide"
+[[mass]]
+name = "slide"
+value = 2.0
+[[damper]]
+name = "guide"
+between = ["slide", "ground"]
+damping = 6.0
+[[input]]
+channel = "u"
+kind = "force"
+at = "slide"
+[[output]]
+channel = "x"
+kind = "displacement"
+at = "slide"
+"#;
+
+fn of_slide(truth: &[Placed]) -> Outcome {
+    let model = Model::from_toml(SLIDE).unwrap();
+    let record = |number| record(&model, truth, number, ROWS, STEP_S, 0.03);
+    let request = Request {
+        model: &model,
+        train: &[1, 2].map(record),
+        check: &[record(3)],
+        withheld: &[],
+    };
+    diagnose(&request, &|_| {}).unwrap()
+}
+
+/// How far it wanders is no effect, and no reason against a spring that holds it.
+#[test]
+fn verify_what_wanders_with_the_noise_of_an_input_is_told_from_a_spring() {
+    let clean = of_slide(&[]).diagnosis.verdict;
+    assert_eq!(clean.status, Status::None, "{clean:?}");
+    let at = Location::Between(["slide".into(), "ground".into()]);
+    let stiffness = 15.0;
+    let held = of_slide(&[placed("linear_stiffness", at, &[stiffness])]);
+    let [spring] = &held.diagnosis.verdict.effects[..] else {
+        panic!("{:?}", held.diagnosis.verdict);
+    };
+    assert_eq!(spring.kind, "linear_stiffness");
+    let found = spring.parameters[0].value;
+    assert!((found / stiffness - 1.0).abs() < 0.1, "{found}");
 }

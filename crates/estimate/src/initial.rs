@@ -28,8 +28,10 @@ pub fn fit_initial_states(
     fixed.given = given;
     let mut initial = problem.initial_guess();
     if own.is_empty() {
-        for (run, state) in fixed.runs.iter().zip(&mut initial) {
-            *state = placed(&fixed.with_runs(vec![run.clone()]), state, weights)?;
+        if fixed.given.iter().any(|placed| fixed.shows_travel(placed)) {
+            for (run, state) in fixed.runs.iter().zip(&mut initial) {
+                *state = at_its_place(&fixed.with_runs(vec![run.clone()]), state, weights);
+            }
         }
         let mut best = states_from(&fixed, initial.clone(), weights)?;
         if !may_part(&fixed.given) {
@@ -85,34 +87,25 @@ pub fn fit_initial_states_from(
 
 /// An initial state of one run that begins at the right place of every wave whose travel nothing else shows: the best of
 /// fits from all over a period.
-fn placed(alone: &Problem, state: &[f64], weights: &Weights) -> Result<Vec<f64>, EstimateError> {
-    let mut states = drift::places(alone, alone.given.iter(), state.to_vec());
-    if states.len() == 1 {
-        return Ok(states.swap_remove(0));
-    }
+fn at_its_place(alone: &Problem, state: &[f64], weights: &Weights) -> Vec<f64> {
+    let states = drift::places(alone, alone.given.iter(), state.to_vec());
     let fits = states
         .into_iter()
-        .map(|state| states_from(alone, vec![state], weights));
-    let best = best_fit(fits)?;
-    let found = best.and_then(|fit| fit.estimate.initial.into_iter().next());
-    Ok(found.unwrap_or_else(|| state.to_vec()))
+        // A place that cannot be simulated from is not the right one.
+        .filter_map(|state| states_from(alone, vec![state], weights).ok());
+    let found = best_fit(fits).and_then(|fit| fit.estimate.initial.into_iter().next());
+    found.unwrap_or_else(|| state.to_vec())
 }
 
 /// The fit with the least objective, the first of equals.
-fn best_fit(
-    fits: impl Iterator<Item = Result<Fit, EstimateError>>,
-) -> Result<Option<Fit>, EstimateError> {
-    let mut best: Option<Fit> = None;
-    for fit in fits {
-        let fit = fit?;
-        if best
-            .as_ref()
-            .is_none_or(|known| fit.objective < known.objective)
-        {
-            best = Some(fit);
+fn best_fit(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
+    fits.reduce(|best, fit| {
+        if fit.objective < best.objective {
+            fit
+        } else {
+            best
         }
-    }
-    Ok(best)
+    })
 }
 
 /// Whether motions that begin alike may part: then the objective of an initial state has many valleys.
@@ -223,7 +216,8 @@ fn best_of(
         };
         fit_with(alone, &start, weights, true, None)
     });
-    best_fit(fits)?.map_or_else(|| states_from(alone, vec![state], weights), Ok)
+    let fits = fits.collect::<Result<Vec<Fit>, EstimateError>>()?;
+    best_fit(fits.into_iter()).map_or_else(|| states_from(alone, vec![state], weights), Ok)
 }
 
 /// With the values that a record has of its own where they mean nothing.
