@@ -113,6 +113,30 @@ impl ForceLaw for Strides {
     }
 }
 
+/// A damper that sets in with a jump beyond a point, in some sets.
+struct Beyond {
+    damping: f64,
+    point: f64,
+}
+
+impl ForceLaw for Beyond {
+    simgap_integrate::lanes!(damping, point);
+
+    fn force(&self, at: MemberMotion) -> f64 {
+        let (beyond, way) = (at.displacement - self.point, at.velocity.abs() * at.step_s);
+        let share = if way > 0.0 {
+            (beyond / way + 0.5).clamp(0.0, 1.0)
+        } else {
+            f64::from(u8::from(beyond > 0.0))
+        };
+        self.damping * at.velocity * share
+    }
+
+    fn jumps(&self) -> bool {
+        self.damping > 0.0
+    }
+}
+
 /// As [`Cubic`] without lanes of its own.
 struct Alone(Cubic);
 
@@ -204,6 +228,10 @@ fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], drive: &Rc<Drive
             2 | 4 => Box::new(Slip {
                 stiffness: 60.0 * size,
                 limit: 3.0 * size,
+            }),
+            6 => Box::new(Beyond {
+                damping: (3.0 * number(i + 3)).max(0.0),
+                point: 0.01 * number(i + 1),
             }),
             _ => Box::new(Alone(cubic)),
         };
@@ -316,7 +344,7 @@ proptest! {
     fn prop_lanes_are_the_sets_to_the_last_bit(
         n in 1_usize..6,
         bases in 0_usize..3,
-        laws in proptest::collection::vec(0_u8..6, 0..4),
+        laws in proptest::collection::vec(0_u8..7, 0..4),
         substeps in 1_usize..4,
         drives in proptest::collection::vec((-1.0_f64..1.0, 0_usize..60), 1..5),
         numbers in proptest::collection::vec(

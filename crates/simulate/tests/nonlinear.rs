@@ -175,6 +175,40 @@ impl Blow {
     }
 }
 
+/// An accelerometer is sampled of the jump itself: at the touch it shows all of the damper's force or none.
+#[test]
+fn verify_a_sample_at_a_blow_shows_the_force_there() {
+    let [at, _, stiffness, tau] = Blow::STOP;
+    let text = [
+        "[[mass]]\nname = \"block\"\nvalue = 2.0\n",
+        &output("x", "displacement", "block"),
+        &output("v", "velocity", "block"),
+        &output("a", "acceleration", "block"),
+    ]
+    .concat();
+    let stop = placed("end_stop", between("block", "ground"), &Blow::STOP);
+    for k in 0..20 {
+        let start = -0.005 - f64::from(k) / 20.0 * Blow::SPEED * 1e-3;
+        let simulated = predict(
+            &model(&text),
+            std::slice::from_ref(&stop),
+            1,
+            &run(1e-3, 60, vec![]),
+            &[start, Blow::SPEED],
+        );
+        for n in 0..60 {
+            let [x, v, a] = [0, 1, 2].map(|c: usize| simulated[c][n]);
+            let pushed = if x > at {
+                (x - at + tau * v).max(0.0)
+            } else {
+                0.0
+            };
+            let needed = -stiffness * pushed / Blow::MASS;
+            assert!((a - needed).abs() < 1e-6 * stiffness, "{a} for {needed}");
+        }
+    }
+}
+
 /// The force jumps at the touch, wherever that falls within a step: of the largest error over all ways to fall, six halvings
 /// of the step leave what an order of nearly two does.
 #[test]

@@ -61,6 +61,10 @@ impl ForceLaw for Law {
         let lower = (below.min(0.0) + held(-below)).min(0.0);
         self.stiffness * (upper + lower)
     }
+
+    fn jumps(&self) -> bool {
+        self.damping_time_s > 0.0
+    }
 }
 
 impl Effect for EndStop {

@@ -14,6 +14,8 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// ```text
 /// F = a sin(2π d / p) + b cos(2π d / p)
 /// ```
+/// Where nothing shows at which d a record begins, a shift of all d turns a and b into each other: b is then what it was at the
+/// start of a fit, and the places at which the records begin say the rest.
 ///
 /// Reference: \[Otten1997\], cogging of a linear motor.
 pub(crate) struct PositionPeriodicForce;

@@ -53,6 +53,21 @@ pub trait ForceLaw: Any + Send + Sync {
     /// The single-valued part, N.
     fn force(&self, motion: MemberMotion) -> f64;
 
+    /// Whether the force jumps from one point to the next, and [`ForceLaw::force`] spreads the jump over a step.
+    fn jumps(&self) -> bool {
+        false
+    }
+
+    /// For a law that [`ForceLaw::jumps`]: the force at a point less what it is spread over a step, N. A member is moved by the
+    /// one and an output is sampled of the other.
+    fn beyond_step(&self, motion: MemberMotion) -> f64 {
+        let at_a_point = MemberMotion {
+            step_s: 0.0,
+            ..motion
+        };
+        self.force(at_a_point) - self.force(motion)
+    }
+
     /// Whether the force depends on the way the member came, not on where it is alone.
     fn remembers(&self) -> bool {
         false

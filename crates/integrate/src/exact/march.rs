@@ -129,12 +129,14 @@ impl Plant<'_> {
             } else if m > 0 {
                 scratch.base[..bases].copy_from_slice(sample.base_displacement);
                 scratch.base[bases..].copy_from_slice(sample.base_velocity);
-                self.begin(n, state, sample.force, &scratch.base, excitation.start_s);
+                self.begin(state, sample.force, &scratch.base, excitation.start_s);
             }
             let force = if m > 0 {
                 scratch.net.copy_from_slice(sample.force);
+                let steps = (index * excitation.substeps.max(1)) as f64;
+                let time_s = excitation.start_s + steps * self.propagator.time_step_s;
                 for (i, element) in self.elements.iter().enumerate() {
-                    carried[i] = self.smooth[i] + self.dry_end[i];
+                    carried[i] = self.carried(i, state, &scratch.base, time_s);
                     spread(element, carried[i], &mut scratch.net);
                 }
                 scratch.net.as_slice()

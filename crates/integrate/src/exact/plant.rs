@@ -146,26 +146,41 @@ impl<'a> Plant<'a> {
         }
     }
 
+    /// Motion across an element.
+    fn motion(&self, element: &Element, state: &[f64], base: &[f64], time_s: f64) -> MemberMotion {
+        let (x, v) = state.split_at(self.propagator.dof_count);
+        let (base_x, base_v) = base.split_at(base.len() / 2);
+        let across = |values: &[f64], base: &[f64]| {
+            project(element.a, values, base) - project(element.b, values, base)
+        };
+        MemberMotion {
+            displacement: across(x, base_x),
+            velocity: across(v, base_v),
+            time_s,
+            step_s: self.propagator.time_step_s,
+        }
+    }
+
+    /// The force that an element carries at a sample.
+    pub(super) fn carried(&self, i: usize, state: &[f64], base: &[f64], time_s: f64) -> f64 {
+        let element = &self.elements[i];
+        let carried = self.smooth[i] + self.dry_end[i];
+        if element.law.jumps() {
+            let motion = self.motion(element, state, base, time_s);
+            carried + element.law.beyond_step(motion)
+        } else {
+            carried
+        }
+    }
+
     /// Forces at the first sample, where the motion is given.
-    pub(super) fn begin(
-        &mut self,
-        n: usize,
-        state: &[f64],
-        force: &[f64],
-        base: &[f64],
-        time_s: f64,
-    ) {
+    pub(super) fn begin(&mut self, state: &[f64], force: &[f64], base: &[f64], time_s: f64) {
         let bases = base.len() / 2;
         for (i, element) in self.elements.iter().enumerate() {
             let across = |values: &[f64], base: &[f64]| {
                 project(element.a, values, base) - project(element.b, values, base)
             };
-            let motion = MemberMotion {
-                displacement: across(&state[..n], &base[..bases]),
-                velocity: across(&state[n..2 * n], &base[bases..]),
-                time_s,
-                step_s: self.propagator.time_step_s,
-            };
+            let motion = self.motion(element, state, base, time_s);
             self.from[i] = motion;
             self.smooth[i] = if self.remembers[i] {
                 let first = element.law.follow(self.memory[i], motion, motion);

@@ -7,7 +7,7 @@ use super::row::{Row, State, copy};
 use super::source::{Source, fill, sources};
 use super::wide::Wide;
 use super::{LANES, Pack};
-use crate::exact::law::Element;
+use crate::exact::law::{Element, MemberMotion};
 use crate::exact::march::Excitation;
 use crate::exact::plant::Plant;
 use crate::exact::propagator::ExactPropagator;
@@ -79,7 +79,7 @@ impl<'a> LaneSet<'a> {
                 .chain(e.base_velocity.iter().take(e.base_count))
                 .copied()
                 .collect();
-            plant.begin(n, &state, &e.dof_force[..n], &base, e.start_s);
+            plant.begin(&state, &e.dof_force[..n], &base, e.start_s);
         }
         plant
     }
@@ -184,6 +184,28 @@ impl<'a> Lanes<'a> {
         put(&mut state.displacement, &|l| self.sets[l].displacement);
         put(&mut state.velocity, &|l| self.sets[l].velocity);
         state
+    }
+
+    /// Adds to what an element whose force jumps carries what it is at a point beyond what it is over a step.
+    fn add_beyond_step<S: Simd, R: Row>(
+        &self,
+        simd: S,
+        [i, sample]: [usize; 2],
+        (state, base): (&State<R>, &[Pack]),
+        carried: &mut Pack,
+    ) {
+        let [displacement, velocity] = self.block.across(simd, i, state, base);
+        let jumping = self.sets.iter().enumerate();
+        for (l, set) in jumping.filter(|(_, set)| set.elements[i].law.jumps()) {
+            let step_s = set.propagator.time_step_s;
+            let steps = (sample * set.excitation.substeps.max(1)) as f64;
+            carried.0[l] += set.elements[i].law.beyond_step(MemberMotion {
+                displacement: displacement.0[l],
+                velocity: velocity.0[l],
+                time_s: set.excitation.start_s + steps * step_s,
+                step_s,
+            });
+        }
     }
 
     /// Takes the excitation at a sample; a set that is over stays at its last.
@@ -302,6 +324,11 @@ impl<R: Row> Seen<R> {
         // What an observer indexes as it likes is kept in memory; the state need not be.
         self.state.copy_from(state);
         lanes.block.carried(simd, &mut self.carried);
+        for (i, carried) in self.carried.iter_mut().enumerate() {
+            if lanes.block.jumps[i] {
+                lanes.add_beyond_step(simd, [i, sample], (state, base), carried);
+            }
+        }
         let needs_acceleration = observer.needs_acceleration();
         if needs_acceleration {
             copy(&mut self.net, force);

@@ -24,6 +24,8 @@ pub(super) struct Block<'a> {
     sweeps: usize,
     any_dry: bool,
     any_memory: bool,
+    /// Whether the force of an element jumps in some set.
+    pub(super) jumps: Vec<bool>,
     free: Vec<[Pack; 2]>,
     step_s: Pack,
     start_s: Pack,
@@ -118,6 +120,9 @@ impl<'a> Block<'a> {
                 SWEEPS
             },
             any_dry: plants[0].dry.contains(&true),
+            jumps: (0..m)
+                .map(|i| sets.iter().any(|set| set.elements[i].law.jumps()))
+                .collect(),
             any_memory: plants[0].remembers.contains(&true),
             free: vec![[Pack::ZERO; 2]; m],
             step_s: Pack::of(|l| sets[l].propagator.time_step_s),
@@ -246,6 +251,23 @@ impl<'a> Block<'a> {
             }
             self.kernel.push_held(simd, net, next);
         }
+    }
+
+    /// Motion across an element at a sample.
+    #[inline(always)]
+    pub(super) fn across<S: Simd, R: Row>(
+        &self,
+        simd: S,
+        i: usize,
+        state: &State<R>,
+        base: &[Pack],
+    ) -> [Pack; 2] {
+        let (base_x, base_v) = base.split_at(base.len() / 2);
+        let nodes = self.nodes[i];
+        [
+            across(simd, nodes, state.displacement.packs(), base_x),
+            across(simd, nodes, state.velocity.packs(), base_v),
+        ]
     }
 
     /// Forces that the elements carry at a sample.
