@@ -236,9 +236,7 @@ pub(crate) fn held_back(
     shown
         .par_iter()
         .map(|single| {
-            let estimate = &single.fit.estimate;
-            let set = estimate.effects.iter().chain(&estimate.nominal);
-            let set: Vec<Placed> = set.cloned().collect();
+            let set: Vec<Placed> = single.fit.estimate.placed().cloned().collect();
             Ok(total(&predict(check, &set, weights)?.nrmse))
         })
         .collect()

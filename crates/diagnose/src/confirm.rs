@@ -112,10 +112,6 @@ fn held_back_variance(
     let mut start = start.clone();
     start.initial.truncate(learnt.runs.len());
     let estimate = fit(learnt, &start, weights)?.estimate;
-    let effects: Vec<Placed> = estimate
-        .effects
-        .into_iter()
-        .chain(estimate.nominal)
-        .collect();
+    let effects: Vec<Placed> = estimate.placed().cloned().collect();
     Ok(fit_initial_states(kept, &effects, weights)?.variance)
 }

@@ -27,12 +27,7 @@ pub(crate) fn fit_to_all(
         .iter()
         .any(|placed| train.shows_travel(placed))
     {
-        let all: Vec<Placed> = found
-            .effects
-            .iter()
-            .chain(&found.nominal)
-            .cloned()
-            .collect();
+        let all: Vec<Placed> = found.placed().cloned().collect();
         fit_initial_states(train, &all, weights)?.estimate.initial
     } else {
         as_given.to_vec()

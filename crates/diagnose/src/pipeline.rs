@@ -85,9 +85,7 @@ pub(crate) struct Answer {
 impl Answer {
     /// Everything that is put on the nominal model.
     pub(crate) fn placed(&self) -> Vec<Placed> {
-        let estimate = &self.estimate.estimate;
-        let all = estimate.effects.iter().chain(&estimate.nominal);
-        all.cloned().collect()
+        self.estimate.estimate.placed().cloned().collect()
     }
 
     /// The effects that are named.

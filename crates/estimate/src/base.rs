@@ -151,8 +151,7 @@ impl Base<'_> {
         let mut simulators = Vec::with_capacity(trials.len() * runs);
         for (values, _) in trials {
             let trial = Placed::new(candidate.effect, candidate.at.clone(), values.clone());
-            let known = estimate.effects.iter().chain(&estimate.nominal);
-            let effects: Vec<Placed> = known.chain([&trial]).cloned().collect();
+            let effects: Vec<Placed> = estimate.placed().chain([&trial]).cloned().collect();
             simulators.extend(self.problem.simulators(&effects)?);
         }
         let jobs: Vec<Job<'_>> = simulators

@@ -41,6 +41,13 @@ pub struct Start {
     pub initial: Vec<Vec<f64>>,
 }
 
+impl Start {
+    /// Everything that is put on the nominal model: the effects, then the nominal parameters.
+    pub fn placed(&self) -> impl Iterator<Item = &Placed> {
+        self.effects.iter().chain(&self.nominal)
+    }
+}
+
 /// What a fit may do with the start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Freedom {

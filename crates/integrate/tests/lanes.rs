@@ -123,13 +123,7 @@ impl ForceLaw for Beyond {
     simgap_integrate::lanes!(damping, point);
 
     fn force(&self, at: MemberMotion) -> f64 {
-        let (beyond, way) = (at.displacement - self.point, at.velocity.abs() * at.step_s);
-        let share = if way > 0.0 {
-            (beyond / way + 0.5).clamp(0.0, 1.0)
-        } else {
-            f64::from(u8::from(beyond > 0.0))
-        };
-        self.damping * at.velocity * share
+        self.damping * at.velocity * at.set_in(at.displacement - self.point)
     }
 
     fn jumps(&self) -> bool {

@@ -34,18 +34,6 @@ struct Law {
     damping_time_s: f64,
 }
 
-/// Which part of what sets in at a point acts so far beyond it, where a step goes so far: a straight line from half a step
-/// before it to half a step after it pushes as much as a jump there.
-fn set_in(beyond: f64, way: f64) -> f64 {
-    if way > 0.0 {
-        (beyond / way + 0.5).clamp(0.0, 1.0)
-    } else if beyond > 0.0 {
-        1.0
-    } else {
-        0.0
-    }
-}
-
 impl ForceLaw for Law {
     lanes!(upper, lower, stiffness, damping_time_s);
 
@@ -54,9 +42,8 @@ impl ForceLaw for Law {
             motion.displacement - self.upper,
             motion.displacement + self.lower,
         );
-        // The damper sets in with a jump, over the way of one step.
-        let way = motion.velocity.abs() * motion.step_s;
-        let held = |inside: f64| self.damping_time_s * motion.velocity * set_in(inside, way);
+        // The damper sets in with a jump.
+        let held = |inside: f64| self.damping_time_s * motion.velocity * motion.set_in(inside);
         let upper = (above.max(0.0) + held(above)).max(0.0);
         let lower = (below.min(0.0) + held(-below)).min(0.0);
         self.stiffness * (upper + lower)

@@ -14,8 +14,24 @@ pub struct MemberMotion {
     /// t, s, on the clock of the record.
     pub time_s: f64,
     /// Length of the steps of the march, s; zero where there are none. Between two of its points a force goes in a straight
-    /// line: one that jumps has to do so over a step, half of it before and half after, to push as much.
+    /// line: one that jumps has to do so over a step ([`MemberMotion::set_in`]).
     pub step_s: f64,
+}
+
+impl MemberMotion {
+    /// Which part of what sets in at a point acts so far beyond it, m: all or nothing, or, where a step of the march goes so
+    /// far, a straight line from half a step before the point to half a step after it, which pushes as much.
+    #[must_use]
+    pub fn set_in(&self, beyond_m: f64) -> f64 {
+        let way = self.velocity.abs() * self.step_s;
+        if way > 0.0 {
+            (beyond_m / way + 0.5).clamp(0.0, 1.0)
+        } else if beyond_m > 0.0 {
+            1.0
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Where a law that remembers is on its way along a move.

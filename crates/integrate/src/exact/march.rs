@@ -42,6 +42,13 @@ pub struct Excitation<'a> {
     pub substeps: usize,
 }
 
+impl Excitation<'_> {
+    /// When so many steps of a length have passed, s.
+    pub(super) fn time_s(&self, steps: usize, step_s: f64) -> f64 {
+        self.start_s + steps as f64 * step_s
+    }
+}
+
 /// The plant at one sample.
 #[derive(Debug, Clone, Copy)]
 pub struct Snapshot<'a> {
@@ -133,8 +140,8 @@ impl Plant<'_> {
             }
             let force = if m > 0 {
                 scratch.net.copy_from_slice(sample.force);
-                let steps = (index * excitation.substeps.max(1)) as f64;
-                let time_s = excitation.start_s + steps * self.propagator.time_step_s;
+                let steps = index * excitation.substeps.max(1);
+                let time_s = excitation.time_s(steps, self.propagator.time_step_s);
                 for (i, element) in self.elements.iter().enumerate() {
                     carried[i] = self.carried(i, state, &scratch.base, time_s);
                     spread(element, carried[i], &mut scratch.net);
@@ -187,8 +194,8 @@ impl Plant<'_> {
                 let (x, v) = scratch.base.split_at_mut(excitation.base_count);
                 interpolate(from.base_displacement, to.base_displacement, end, x);
                 interpolate(from.base_velocity, to.base_velocity, end, v);
-                let steps = ((index - 1) * substeps + sub + 1) as f64;
-                let time_s = excitation.start_s + steps * self.propagator.time_step_s;
+                let steps = (index - 1) * substeps + sub + 1;
+                let time_s = excitation.time_s(steps, self.propagator.time_step_s);
                 self.solve(&scratch.next, &scratch.base, time_s);
                 self.push(kernel, &mut scratch.next, &mut scratch.net);
             }

@@ -73,6 +73,11 @@ fn project(node: Node, values: &[f64], bases: &[f64]) -> f64 {
     }
 }
 
+/// What stands at the end of an element less what stands at the other.
+fn across(element: &Element, values: &[f64], bases: &[f64]) -> f64 {
+    project(element.a, values, bases) - project(element.b, values, bases)
+}
+
 /// Adds what a force carried by an element does to the degrees of freedom.
 pub(super) fn spread(element: &Element, force: f64, dof_force: &mut [f64]) {
     if let Node::Dof(i) = element.a {
@@ -150,12 +155,9 @@ impl<'a> Plant<'a> {
     fn motion(&self, element: &Element, state: &[f64], base: &[f64], time_s: f64) -> MemberMotion {
         let (x, v) = state.split_at(self.propagator.dof_count);
         let (base_x, base_v) = base.split_at(base.len() / 2);
-        let across = |values: &[f64], base: &[f64]| {
-            project(element.a, values, base) - project(element.b, values, base)
-        };
         MemberMotion {
-            displacement: across(x, base_x),
-            velocity: across(v, base_v),
+            displacement: across(element, x, base_x),
+            velocity: across(element, v, base_v),
             time_s,
             step_s: self.propagator.time_step_s,
         }
@@ -175,11 +177,8 @@ impl<'a> Plant<'a> {
 
     /// Forces at the first sample, where the motion is given.
     pub(super) fn begin(&mut self, state: &[f64], force: &[f64], base: &[f64], time_s: f64) {
-        let bases = base.len() / 2;
+        let no_force = vec![0.0; base.len() / 2];
         for (i, element) in self.elements.iter().enumerate() {
-            let across = |values: &[f64], base: &[f64]| {
-                project(element.a, values, base) - project(element.b, values, base)
-            };
             let motion = self.motion(element, state, base, time_s);
             self.from[i] = motion;
             self.smooth[i] = if self.remembers[i] {
@@ -191,7 +190,7 @@ impl<'a> Plant<'a> {
             };
             let level = element.law.dry_level(motion.velocity.abs()).unwrap_or(0.0);
             // At rest the dry force balances what it can of the excitation across it.
-            let at_rest = across(force, &vec![0.0; bases]).clamp(-level, level);
+            let at_rest = across(element, force, &no_force).clamp(-level, level);
             self.end_velocity[i] = motion.velocity;
             self.dry_end[i] = if motion.velocity == 0.0 {
                 at_rest
@@ -204,14 +203,12 @@ impl<'a> Plant<'a> {
     /// Solves (3) and (4) for the forces at the end of the step.
     #[inline(always)]
     pub(super) fn solve(&mut self, free: &[f64], base: &[f64], time_s: f64) {
-        let n = free.len() / 2;
-        let bases = base.len() / 2;
+        let (free_x, free_v) = free.split_at(free.len() / 2);
+        let (base_x, base_v) = base.split_at(base.len() / 2);
         let m = self.elements.len();
         for (i, element) in self.elements.iter().enumerate() {
-            self.free_displacement[i] = project(element.a, &free[..n], &base[..bases])
-                - project(element.b, &free[..n], &base[..bases]);
-            self.free_velocity[i] = project(element.a, &free[n..], &base[bases..])
-                - project(element.b, &free[n..], &base[bases..]);
+            self.free_displacement[i] = across(element, free_x, base_x);
+            self.free_velocity[i] = across(element, free_v, base_v);
         }
         self.start_velocity.copy_from_slice(&self.end_velocity);
         // What sticks ends a step at rest but for rounding.

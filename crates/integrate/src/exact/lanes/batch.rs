@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::block::Block;
+use super::block::{Block, motion_across};
 use super::row::{Row, State, copy};
 use super::source::{Source, fill, sources};
 use super::wide::Wide;
@@ -194,15 +194,15 @@ impl<'a> Lanes<'a> {
         (state, base): (&State<R>, &[Pack]),
         carried: &mut Pack,
     ) {
-        let [displacement, velocity] = self.block.across(simd, i, state, base);
+        let [displacement, velocity] = motion_across(simd, self.block.nodes[i], state, base);
         let jumping = self.sets.iter().enumerate();
         for (l, set) in jumping.filter(|(_, set)| set.elements[i].law.jumps()) {
             let step_s = set.propagator.time_step_s;
-            let steps = (sample * set.excitation.substeps.max(1)) as f64;
+            let steps = sample * set.excitation.substeps.max(1);
             carried.0[l] += set.elements[i].law.beyond_step(MemberMotion {
                 displacement: displacement.0[l],
                 velocity: velocity.0[l],
-                time_s: set.excitation.start_s + steps * step_s,
+                time_s: set.excitation.time_s(steps, step_s),
                 step_s,
             });
         }

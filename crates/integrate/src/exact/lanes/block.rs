@@ -16,7 +16,7 @@ use crate::exact::plant::{Plant, SWEEPS};
 pub(super) struct Block<'a> {
     arch: Arch,
     pub(super) kernel: LaneKernel,
-    nodes: Vec<[Node; 2]>,
+    pub(super) nodes: Vec<[Node; 2]>,
     laws: Vec<Box<dyn LaneLaw + 'a>>,
     pub(super) elements: Vec<ElementLanes>,
     /// How the forces of element j move element i, row-major, as in the march of one set.
@@ -45,6 +45,21 @@ fn at(node: Node, values: &[Pack], bases: &[Pack]) -> Pack {
 fn across<S: Simd>(simd: S, [a, b]: [Node; 2], values: &[Pack], bases: &[Pack]) -> Pack {
     let of_node = |node| Wide::of(simd, &at(node, values, bases));
     (of_node(a) - of_node(b)).pack()
+}
+
+/// Motion across an element: displacement and velocity.
+#[inline(always)]
+pub(super) fn motion_across<S: Simd, R: Row>(
+    simd: S,
+    nodes: [Node; 2],
+    state: &State<R>,
+    base: &[Pack],
+) -> [Pack; 2] {
+    let (base_x, base_v) = base.split_at(base.len() / 2);
+    [
+        across(simd, nodes, state.displacement.packs(), base_x),
+        across(simd, nodes, state.velocity.packs(), base_v),
+    ]
 }
 
 /// Adds what a force between two nodes does to the degrees of freedom.
@@ -157,16 +172,13 @@ impl<'a> Block<'a> {
     /// Forces of the elements at the end of the step.
     #[inline(always)]
     fn solve<S: Simd, R: Row>(&mut self, simd: S, next: &State<R>, base: &[Pack], steps: f64) {
-        let (base_x, base_v) = base.split_at(base.len() / 2);
         let passed = Wide::splat(simd, steps) * Wide::of(simd, &self.step_s);
         let time_s = (Wide::of(simd, &self.start_s) + passed).pack();
         let parts = self.elements.iter_mut().zip(&mut self.free);
         for ((element, free), &nodes) in parts.zip(&self.nodes) {
-            let displacement = across(simd, nodes, next.displacement.packs(), base_x);
-            let velocity = across(simd, nodes, next.velocity.packs(), base_v);
-            *free = [displacement, velocity];
+            *free = motion_across(simd, nodes, next, base);
             element.time_s = time_s;
-            element.free_velocity = velocity;
+            element.free_velocity = free[1];
             element.start_velocity = element.end_velocity;
         }
         let mut open = Mask::ALL;
@@ -251,23 +263,6 @@ impl<'a> Block<'a> {
             }
             self.kernel.push_held(simd, net, next);
         }
-    }
-
-    /// Motion across an element at a sample.
-    #[inline(always)]
-    pub(super) fn across<S: Simd, R: Row>(
-        &self,
-        simd: S,
-        i: usize,
-        state: &State<R>,
-        base: &[Pack],
-    ) -> [Pack; 2] {
-        let (base_x, base_v) = base.split_at(base.len() / 2);
-        let nodes = self.nodes[i];
-        [
-            across(simd, nodes, state.displacement.packs(), base_x),
-            across(simd, nodes, state.velocity.packs(), base_v),
-        ]
     }
 
     /// Forces that the elements carry at a sample.
