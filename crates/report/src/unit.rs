@@ -1,6 +1,7 @@
 //! Units out of parameter names, and prefixes that keep numbers short.
 
 use simgap_diagnose::NamedParameter;
+use simgap_effects::find;
 
 use crate::number::{at_resolution, decimal_exponent};
 
@@ -126,13 +127,27 @@ pub(crate) struct Estimate {
     pub(crate) plus_minus: String,
 }
 
-/// The estimate to the two digits that its interval can carry. `unit` is used where the name has
-/// none.
-pub(crate) fn estimate(parameter: &NamedParameter, unit: &str) -> Estimate {
-    let Quantity { words, unit: own } = quantity(&parameter.name);
-    let unit = if own.is_empty() { unit } else { &own };
+/// What the catalogue writes for the unit that the records give a channel.
+const OF_THE_OUTPUT: &str = "unit of the output";
+
+/// Unit of a parameter that is in the unit of the channel it acts on, or in that unit by the second.
+fn unit_of_channel(kind: &str, parameter: &str, channel_unit: &str) -> Option<String> {
+    let known = find(kind)?.parameters();
+    let known = known.iter().find(|known| known.name == parameter)?;
+    let per = known.unit.strip_prefix(OF_THE_OUTPUT)?;
+    Some(match (channel_unit, per) {
+        ("", per) if !per.is_empty() => format!("1{per}"),
+        _ => format!("{channel_unit}{per}"),
+    })
+}
+
+/// The estimate of a parameter of such an effect, to the two digits that its interval can carry. `channel_unit` is the unit
+/// of the channel on which the effect acts, empty for an effect that acts on none.
+pub(crate) fn estimate(kind: &str, parameter: &NamedParameter, channel_unit: &str) -> Estimate {
+    let Quantity { words, unit } = quantity(&parameter.name);
+    let unit = unit_of_channel(kind, &parameter.name, channel_unit).unwrap_or(unit);
     let [low, high] = parameter.ci95;
-    let Prefixed { unit, factor } = prefixed(unit, parameter.value.abs());
+    let Prefixed { unit, factor } = prefixed(&unit, parameter.value.abs());
     let half = 0.5 * (high - low) * factor;
     let value = parameter.value * factor;
     let finest = decimal_exponent(value) - 5;
@@ -224,7 +239,7 @@ mod tests {
             value,
             ci95,
         };
-        let e = estimate(&parameter, "");
+        let e = estimate("coulomb_friction", &parameter, "");
         (e.value, e.interval)
     }
 
@@ -233,7 +248,12 @@ mod tests {
         let shown = |value, low, high| {
             let name = "friction_force_n".to_owned();
             let ci95 = [low, high];
-            estimate(&NamedParameter { name, value, ci95 }, "").plus_minus
+            estimate(
+                "coulomb_friction",
+                &NamedParameter { name, value, ci95 },
+                "",
+            )
+            .plus_minus
         };
         assert_eq!(
             shown(2104.3, 2051.0, 2157.6),
@@ -243,6 +263,30 @@ mod tests {
         assert_eq!(shown(20.43, 20.0, f64::INFINITY), "20.4\u{a0}N");
         // Lopsided: the two ends are told elsewhere.
         assert_eq!(shown(20.43, 20.0, 25.0), "20.4\u{a0}N");
+    }
+
+    #[test]
+    fn verify_only_what_is_in_the_unit_of_a_channel_takes_it() {
+        let shown = |kind: &str, name: &str, value: f64, unit: &str| {
+            let name = name.to_owned();
+            let ci95 = [0.9 * value, 1.1 * value];
+            estimate(kind, &NamedParameter { name, value, ci95 }, unit).value
+        };
+        assert_eq!(shown("sensor_bias", "bias", 0.0012, "m"), "1.20\u{a0}mm");
+        assert_eq!(shown("sensor_bias", "bias", 0.0012, ""), "0.00120");
+        let drift = |unit| shown("sensor_drift", "drift_rate_per_s", 0.0012, unit);
+        assert_eq!(drift("m"), "1.20\u{a0}mm/s");
+        assert_eq!(drift(""), "0.00120\u{a0}1/s");
+        let pure = [
+            ("alternating_timing", "even_share"),
+            ("alternating_gain", "gain_difference"),
+            ("sensor_gain", "gain_factor"),
+        ];
+        for (kind, name) in pure {
+            assert!(find(kind).is_some_and(|e| e.parameters().iter().any(|p| p.name == name)));
+            assert_eq!(shown(kind, name, 0.52, "m"), "0.520", "{kind}");
+        }
+        assert_eq!(shown("sensor_delay", "delay_s", 0.002, "m"), "2.00\u{a0}ms");
     }
 
     #[test]

@@ -105,7 +105,7 @@ fn parameters(effect: &NamedEffect, unit: &str) -> String {
         .parameters
         .iter()
         .map(|p| {
-            let e = estimate(p, unit);
+            let e = estimate(&effect.kind, p, unit);
             if !is_fitted(p) {
                 return format!("{} {}", e.words, e.value);
             }
@@ -184,7 +184,7 @@ fn with_figure(effect: &NamedEffect) -> String {
     let (Some(parameter), None) = (fitted.next(), fitted.next()) else {
         return format!("{name} {place}");
     };
-    let e = estimate(parameter, "");
+    let e = estimate(&effect.kind, parameter, "");
     if !parameter.value.is_finite() {
         format!("{name} {place}")
     } else if e.words.ends_with("factor") {

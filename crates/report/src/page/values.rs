@@ -64,7 +64,7 @@ fn effect_values(html: &mut Html, effect: &NamedEffect, input: &ReportInput<'_>,
         .parameters
         .iter()
         .map(|p| {
-            let e = estimate(p, unit);
+            let e = estimate(&effect.kind, p, unit);
             let sense = sense(effect, p, input);
             (
                 false,
