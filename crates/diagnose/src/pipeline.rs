@@ -12,7 +12,7 @@ use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::difference::{SEEN, is_told_from_none};
 use crate::evidence::{independence, is_nominal};
 use crate::final_fit::fit_to_all;
-use crate::gap::{Prediction, gap, predict};
+use crate::gap::{Prediction, gap, predict, total};
 use crate::hypothesis::{Hypothesis, name, remove, sort};
 use crate::input_noise::input_noise;
 use crate::locate::Located;
@@ -182,11 +182,13 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let mut verdict = answer::verdict(&train, &answer, &judged_by);
     let left_unknown = verdict.status == crate::Status::Unknown;
     let (gap, placed, shown) = if left_unknown {
-        // Blame nothing: the corrected model is the recalibrated one.
-        let nothing = (&nominal_placed[..], &predictions[1]);
-        let gap = crate::gap::gap(&check, &predictions[0], &predictions[1], nothing, &driven);
+        // Blame nothing: the corrected model is the recalibrated one, or the one as given where that predicts better.
         verdict.effects.clear();
-        (gap, recalibrated.estimate.nominal.clone(), 1)
+        let shown = usize::from(total(&predictions[1].nrmse) < total(&predictions[0].nrmse));
+        let kept = [&nominal_placed, known][shown].clone();
+        let corrected = (&kept[..], &predictions[shown]);
+        let gap = crate::gap::gap(&check, &predictions[0], &predictions[1], corrected, &driven);
+        (gap, kept, shown)
     } else {
         (gap, placed, 2)
     };
@@ -205,6 +207,10 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let mut notes = notes(request, &data);
     if let Some(anew) = anew.filter(|_| !left_unknown) {
         notes.insert(0, stretches::told(&anew));
+    }
+    if shown == 0 {
+        let worse = "re-estimated parameters predict the check records worse: the corrected model is the model as given";
+        notes.insert(0, worse.into());
     }
     if located.is_hidden {
         let hidden = "the gap hardly stands out of the noise: where it lies is where the noise is";

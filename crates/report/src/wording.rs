@@ -261,7 +261,9 @@ fn stand_in(diagnosis: &Diagnosis) -> Option<String> {
 pub(crate) fn corrected_name(status: Status) -> &'static str {
     match status {
         Status::Effect => "corrected model",
-        Status::Parameters | Status::None | Status::Unknown => "re-estimated model",
+        Status::Parameters | Status::None => "re-estimated model",
+        // Re-estimated or as given, whichever predicts better.
+        Status::Unknown => "final model",
     }
 }
 
