@@ -326,7 +326,8 @@ fn search(
         sort(&mut sets);
         Ok(sets)
     };
-    let finalists = again(&pool[..pool.len().min(FINALISTS)])?;
+    let shown = pool.iter().filter(|set| search.shows(set));
+    let finalists = again(&shown.take(FINALISTS).cloned().collect::<Vec<_>>())?;
     let shown = finalists.into_par_iter().filter(|set| search.shows(set));
     let finalists: Vec<Hypothesis> = shown.collect();
     let singles: Vec<Hypothesis> = pool
