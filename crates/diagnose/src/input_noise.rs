@@ -18,6 +18,8 @@ use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states};
 use simgap_signal::noise::{fall_of_spectrum, white_noise_std};
 use simgap_simulate::Run;
 
+use crate::evidence::is_nominal;
+
 /// Largest noise of an input, over its standard deviation: what is more is broadband excitation.
 const MOST: f64 = 0.05;
 /// Noise below this share of an input is rounding.
@@ -51,14 +53,16 @@ impl InputNoise {
     }
 }
 
-/// r of each channel by (1) for a model with effects that is driven by the runs of a problem. Where excitation hides
+/// r of each channel by (1) for a model that is driven by the runs of a problem, with the nominal parameters among
+/// `placed` as they were estimated beside the rest of it: a set without the cause bends them. Where excitation hides
 /// the noise of an input, it has the least that is seen in another run, of the problem or of `others`.
 pub(crate) fn input_noise(
     problem: &Problem,
-    effects: &[Placed],
+    placed: &[Placed],
     weights: &Weights,
     others: &[Run],
 ) -> Result<Vec<InputNoise>, EstimateError> {
+    let parameters: Vec<Placed> = placed.iter().filter(|p| is_nominal(p)).cloned().collect();
     let nothing = vec![0.0; problem.model.outputs.len()];
     let mut all = vec![InputNoise::default(); nothing.len()];
     let mut count = 0.0;
@@ -74,7 +78,7 @@ pub(crate) fn input_noise(
         if sizes.iter().all(|size| *size == 0.0) {
             continue;
         }
-        let simulator = problem.simulator(effects, index)?;
+        let simulator = problem.simulator(&parameters, index)?;
         let rest = vec![0.0; simulator.state_len()];
         let clean = simulator.predict(run, &rest)?;
         let mut white_part = nothing.clone();
@@ -95,7 +99,7 @@ pub(crate) fn input_noise(
             Ok(noisy)
         });
         let drawn = drawn.collect::<Result<Vec<Run>, EstimateError>>()?;
-        let left = fit_initial_states(&problem.with_runs(drawn), effects, weights)?;
+        let left = fit_initial_states(&problem.with_runs(drawn), &parameters, weights)?;
         for (c, (sum, white)) in all.iter_mut().zip(&white_part).enumerate() {
             let squares = left.discrepancy.iter().map(|draw| square_sum(&draw[c]));
             let mean = squares.clone().sum::<f64>() / DRAWS as f64;

@@ -140,12 +140,13 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         .map(|effects| predict(&check, effects, &plain))
         .collect::<Result<Vec<_>, _>>()?;
     let known = &recalibrated.estimate.nominal;
-    let driven = input_noise(&check, known, &plain, &train.runs)?;
-    let gap_of = |placed: &[Placed], predictions: &[Prediction]| {
-        let corrected = (placed, &predictions[2]);
-        gap(&check, &predictions[0], &predictions[1], corrected, &driven)
+    let gap_of = |placed: &[Placed], predictions: &[Prediction], last: usize| {
+        let driven = input_noise(&check, placed, &plain, &train.runs)?;
+        let corrected = (placed, &predictions[last]);
+        let gap = gap(&check, &predictions[0], &predictions[1], corrected, &driven);
+        Ok::<_, DiagnoseError>(gap)
     };
-    let mut gap = gap_of(&placed, &predictions);
+    let mut gap = gap_of(&placed, &predictions, 2)?;
     // What it is judged by.
     let between = |answer: &Answer, placed: &[Placed], predictions: &[Prediction], gap: &Gap| {
         let between = jumps::gap_between(&check, &answer.set, (placed, predictions), gap);
@@ -172,7 +173,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         answer.singles = singles;
         placed = answer.placed();
         predictions[2] = predict(&check, &placed, &plain)?;
-        gap = gap_of(&placed, &predictions);
+        gap = gap_of(&placed, &predictions, 2)?;
         judged_by = between(&answer, &placed, &predictions, &gap);
     }
     answer.held_back = {
@@ -186,9 +187,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         verdict.effects.clear();
         let shown = usize::from(total(&predictions[1].nrmse) < total(&predictions[0].nrmse));
         let kept = [&nominal_placed, known][shown].clone();
-        let corrected = (&kept[..], &predictions[shown]);
-        let gap = crate::gap::gap(&check, &predictions[0], &predictions[1], corrected, &driven);
-        (gap, kept, shown)
+        (gap_of(&kept, &predictions, shown)?, kept, shown)
     } else {
         (gap, placed, 2)
     };

@@ -38,7 +38,7 @@ pub(crate) fn gap_followed_anew(
         .collect::<Result<Vec<_>, _>>()?;
     let last = (corrected, &predictions[2]);
     // Over a stretch it drives the plant less far away than over a record.
-    let driven = input_noise(&cut, recalibrated, weights, &check.runs)?;
+    let driven = input_noise(&cut, corrected, weights, &check.runs)?;
     let gap = gap(&cut, &predictions[0], &predictions[1], last, &driven);
     let between = gap_of_check_between(&cut, (corrected, &predictions), &gap);
     let follows = follows(&between.as_ref().unwrap_or(&gap).over_all_noise());
