@@ -3,14 +3,17 @@
 use simgap_effects::{Action, Placed};
 use simgap_estimate::{Interval, Problem};
 
+use crate::difference::closes_more;
 use crate::hypothesis::Hypothesis;
 use crate::search::Search;
 
 /// Values within this share of each other are the same.
 const ALIKE: f64 = 0.01;
-/// What one effect may leave, as a multiple of the squared noise, to take the place of the same effect of every
-/// sensor: between the samples of an input nobody knows it, and what lies before the plant is off by more.
+/// What one effect may leave to take the place of the same effect of every sensor, as a multiple of the squared noise
+/// or as a part of the gap beyond what the sensors leave: between the samples of an input nobody knows it, and what lies
+/// before the plant is off by more.
 const COMMON_LEAVES: f64 = 1.5;
+const COMMON_MISSES: f64 = 0.03;
 
 /// Whether a single effect takes the place of a set that names the same fault of every sensor.
 pub(crate) fn is_common_cause(
@@ -21,7 +24,8 @@ pub(crate) fn is_common_cause(
     let named = of_sensors.effects().iter();
     single.effects().len() == 1
         && on_every_channel(search.problem, named, &of_sensors.fit.intervals)
-        && search.leaves_less(single, COMMON_LEAVES)
+        && (search.leaves_less(single, COMMON_LEAVES)
+            || !closes_more(search, of_sensors, single, COMMON_MISSES))
 }
 
 /// Whether the same effect of the measurement chain, with the same values, is named on every one of several

@@ -122,8 +122,18 @@ pub(crate) fn is_sure(
 
 /// Whether the effect closes a part of the gap that is worth a name.
 pub(crate) fn matters(search: &Search<'_>, set: &Hypothesis, subset: &Hypothesis) -> bool {
-    let mut channels = moved(&set.fit, &subset.fit).zip(&search.gap);
-    channels.any(|(moved, gap)| moved > MATTERS * gap)
+    closes_more(search, set, subset, MATTERS)
+}
+
+/// Whether a set closes more of the gap of some channel than another, by this part of it.
+pub(crate) fn closes_more(
+    search: &Search<'_>,
+    set: &Hypothesis,
+    other: &Hypothesis,
+    part: f64,
+) -> bool {
+    let mut channels = moved(&set.fit, &other.fit).zip(&search.gap);
+    channels.any(|(moved, gap)| moved > part * gap)
 }
 
 /// Whether the effect that a subset lacks has a size that can be told from none.

@@ -316,6 +316,9 @@ fn search(
 
     // The finalists, with the colour of the best one's residual.
     progress("finalists");
+    // A set shows what its name says under the weights that it was fitted with.
+    let shown = pool.iter().filter(|set| search.shows(set));
+    let shown: Vec<Hypothesis> = shown.take(FINALISTS).cloned().collect();
     search.reweigh(colour(&pool.first().unwrap_or(&base).fit));
     let again = |sets: &[Hypothesis]| -> Result<Vec<Hypothesis>, DiagnoseError> {
         let mut sets = sets
@@ -325,10 +328,8 @@ fn search(
         sort(&mut sets);
         Ok(sets)
     };
-    let shown = pool.iter().filter(|set| search.shows(set));
-    let finalists = again(&shown.take(FINALISTS).cloned().collect::<Vec<_>>())?;
-    let shown = finalists.into_par_iter().filter(|set| search.shows(set));
-    let finalists: Vec<Hypothesis> = shown.collect();
+    let finalists = again(&shown)?.into_par_iter();
+    let finalists: Vec<Hypothesis> = finalists.filter(|set| search.shows(set)).collect();
     let singles: Vec<Hypothesis> = pool
         .into_iter()
         .filter(|set| set.effects().len() == 1)

@@ -185,8 +185,7 @@ fn is_under_prior(set: &Hypothesis, subset: &Hypothesis) -> bool {
     lacking(subset, set).all(|(placed, _)| adjusted.iter().any(|known| name(known) == name(placed)))
 }
 
-/// What is left of a set when it is pruned and judged, if it still is an answer; a rival that takes a place may turn
-/// out to earn none either.
+/// What is left of a set when it is pruned and judged, if it still is an answer.
 pub(crate) fn earned(
     search: &Search<'_>,
     set: Hypothesis,
@@ -201,6 +200,15 @@ pub(crate) fn earned(
     Ok(Some(judged).filter(|(set, _)| is_answer(set)))
 }
 
+/// What came of rivals that were put in the place of an effect.
+#[derive(Default)]
+struct Former {
+    /// Sets that a rival took the place of: they stay rivals.
+    displaced: Vec<Hypothesis>,
+    /// Sets with a rival that fits better and earns no place, by their [`Hypothesis::key`]: they are none.
+    refused: Vec<Vec<String>>,
+}
+
 /// Finds the rivals of each effect of a set and weighs them. Where a rival turns out better than
 /// the set, it takes its place.
 pub(crate) fn judge(
@@ -209,16 +217,21 @@ pub(crate) fn judge(
     most_swaps: usize,
 ) -> Result<(Hypothesis, Vec<Judged>), EstimateError> {
     let mut set = set;
-    // What one rival took the place of stays a rival.
-    let mut displaced: Vec<Hypothesis> = Vec::new();
+    let mut former = Former::default();
     for _ in 0..most_swaps {
-        let (judged, better) = judge_once(search, &set, &displaced)?;
-        match better {
-            Some(better) => displaced.push(std::mem::replace(&mut set, prune(search, better)?)),
-            None => return Ok((set, judged)),
+        let (judged, better) = judge_once(search, &set, &former)?;
+        let Some(better) = better else {
+            return Ok((set, judged));
+        };
+        let rival = better.key();
+        let better = prune(search, better)?;
+        if better.key() != rival && better.evidence < set.evidence {
+            former.refused.push(rival);
+        } else {
+            former.displaced.push(std::mem::replace(&mut set, better));
         }
     }
-    let (judged, _) = judge_once(search, &set, &displaced)?;
+    let (judged, _) = judge_once(search, &set, &former)?;
     Ok((set, judged))
 }
 
@@ -226,11 +239,11 @@ pub(crate) fn judge(
 fn judge_once(
     search: &Search<'_>,
     set: &Hypothesis,
-    displaced: &[Hypothesis],
+    former: &Former,
 ) -> Result<(Vec<Judged>, Option<Hypothesis>), EstimateError> {
     let judged = (0..set.effects().len())
         .into_par_iter()
-        .map(|i| judge_effect(search, set, i, displaced))
+        .map(|i| judge_effect(search, set, i, former))
         .collect::<Result<Vec<_>, _>>()?;
     let (list, better): (Vec<Judged>, Vec<Option<Hypothesis>>) = judged.into_iter().unzip();
     let better = better.into_iter().flatten().reduce(|best, other| {
@@ -248,7 +261,7 @@ fn judge_effect(
     search: &Search<'_>,
     set: &Hypothesis,
     i: usize,
-    displaced: &[Hypothesis],
+    former: &Former,
 ) -> Result<(Judged, Option<Hypothesis>), EstimateError> {
     let own = &set.effects()[i];
     let subset = without(search, set, i)?;
@@ -267,11 +280,12 @@ fn judge_effect(
         }
     }
     // The set was held against these when it took their place.
-    let known = displaced.iter();
+    let known = former.displaced.iter();
     rivals.extend(known.filter(|old| old.replaces(i, set)).cloned());
     rivals.retain(|rival| {
         let is_behind = rival.evidence < set.evidence - INDISTINGUISHABLE;
-        rival.key() != set.key() && (is_behind || search.shows(rival))
+        let key = rival.key();
+        key != set.key() && !former.refused.contains(&key) && (is_behind || search.shows(rival))
     });
     sort(&mut rivals);
     unique(&mut rivals);
@@ -312,7 +326,7 @@ fn judge_effect(
         swaps,
     };
     // What the set took the place of does not take it back.
-    rivals.retain(|rival| displaced.iter().all(|old| old.key() != rival.key()));
+    rivals.retain(|rival| former.displaced.iter().all(|old| old.key() != rival.key()));
     // A simpler rival that is about as likely is the better name, and so is the parameter that dynamics turn into
     // whose mode no record shows; one as rich must lead.
     let handicap = |rival: &Hypothesis| {

@@ -232,6 +232,41 @@ fn order_of_the_dry_force() {
 }
 
 #[test]
+fn order_of_a_dry_force_that_depends_on_the_speed() {
+    // A driven oscillator that slides through its Stribeck speed and back within a few steps, without sticking:
+    // the mean over a step is that at its mean speed. With that at its end the order is one.
+    struct Stribeck;
+    impl ForceLaw for Stribeck {
+        fn force(&self, _: MemberMotion) -> f64 {
+            0.0
+        }
+
+        fn dry_level(&self, speed: f64) -> Option<f64> {
+            Some(5.0 + 4.0 * (-(speed / 0.4).powi(2)).exp())
+        }
+    }
+    let end = |substeps: usize| {
+        let force: Vec<f64> = (0..61).map(|i| 60.0 * (i as f64 * 0.31).sin()).collect();
+        let plant = one(1.0, 0.5, 100.0);
+        march(
+            &plant,
+            &to_ground(Stribeck),
+            0.05,
+            substeps,
+            &force,
+            [0.1, 0.0],
+        )[60][0]
+    };
+    let reference = end(4096);
+    let errors: Vec<f64> = [4, 16, 64]
+        .iter()
+        .map(|&s| (end(s) - reference).abs())
+        .collect();
+    let order = (errors[0] / errors[2]).log2() / 4.0;
+    assert!(order > 1.6, "observed order {order}, errors {errors:?}");
+}
+
+#[test]
 fn verify_a_spring_as_element_is_the_spring() {
     // The same stiffness and damping, once in the matrices and once as a law on top.
     let force: Vec<f64> = (0..300).map(|i| (0.11 * i as f64).sin()).collect();

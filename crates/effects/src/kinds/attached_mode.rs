@@ -78,6 +78,8 @@ const LIGHTEST: f64 = 1e-5;
 /// An attached mass this many times lighter does not move its host by being carried, and one as many times heavier is
 /// not carried.
 const OUT_OF_PROPORTION: f64 = 1e3;
+/// With more damping an attached mass does not vibrate.
+const RINGS: f64 = 1.0;
 /// An attached mass that is this many times as heavy as its host is hardly carried by it.
 const HEAVIEST: f64 = 10.0;
 
@@ -149,9 +151,10 @@ impl Effect for AttachedMode {
         starts
     }
 
-    /// A lighter one is no mass but a force that dies away, carried by a start kilometres off.
+    /// A lighter one is no mass but a force that dies away, carried by a start kilometres off; one that does not
+    /// ring is a force that lags the motion, and no mode.
     fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
-        values[0] >= LIGHTEST * scale.mass_kg
+        values[0] >= LIGHTEST * scale.mass_kg && values[2] < RINGS
     }
 
     /// One too light to be excited by its host, which rings by its start alone; one too heavy to be moved, and so a
@@ -250,6 +253,17 @@ mod tests {
         assert!(of([0.1 * host, 0.2 * host]).is_none());
         // An interval that holds a light one says nothing.
         assert!(of([5.0 * host, 30.0 * host]).is_none());
+    }
+
+    #[test]
+    fn what_does_not_ring_is_no_mode() {
+        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
+        let is_mode = |damping_ratio: f64| {
+            let values = [0.1 * scale.mass_kg, 5.0, damping_ratio, 0.0, 0.0];
+            AttachedMode.keeps_its_meaning(&values, &scale)
+        };
+        assert!(is_mode(0.3));
+        assert!(!is_mode(1.1));
     }
 
     #[test]

@@ -341,9 +341,12 @@ pub(super) struct Dry {
 /// after the share θ of the step and then either stays or slides on:
 ///
 /// ```text
-/// v_A = v* − G F sgn v₀,   θ = v₀ / (v₀ − v_A)
-/// mean = F sgn(v₀) (2θ − 1)  when the other forces exceed the friction at rest, else v* / G
+/// v₁ = v* − G F(½ (|v₀| + |v₁|)) sgn v₀                              while it slides one way
+/// v_A = v* − G F(½ |v₀|) sgn v₀,   θ = v₀ / (v₀ − v_A)
+/// mean = (θ F(½ |v₀|) − (1 − θ) F(½ |v_A|)) sgn v₀  when the other forces exceed the friction at rest, else v* / G
 /// ```
+///
+/// The mean over a step in which the speed changes is that at the mean speed, of second order in the step.
 ///
 /// A motion that is prescribed does not mind the force; where it pauses, the force stays what it was
 /// `before`, up to what friction can hold.
@@ -364,20 +367,21 @@ pub(super) fn dry_force(
     let holds = compliance * at_rest;
     let rests = start == 0.0;
     let stuck = free / compliance;
-    // Sliding one way: |v| = s v* − G F(|v|), by fixed-point iteration (levels change little in a
+    // Sliding one way: |v₁| = s v* − G F(½ |v₀| + ½ |v₁|), by fixed-point iteration (levels change little in a
     // step).
     let way = sign(choose(rests, free, start));
+    let mean_level = |speed: f64| level(0.5 * (start.abs() + speed));
     let mut speed = way * free;
     for _ in 0..3 {
-        speed = (way * free - compliance * level(speed.max(0.0))).max(0.0);
+        speed = (way * free - compliance * mean_level(speed.max(0.0))).max(0.0);
     }
-    let slid = way * level(speed);
+    let slid = way * mean_level(speed);
     let ahead = free - compliance * slid;
     // A sliding member that turns: what stopped holds against the other forces, and the mean also
     // brakes what was moving; or it slides on the other way.
     let share = start / (start - ahead);
-    let turned = level(0.5 * (start.abs() + ahead.abs())) * way * (2.0 * share - 1.0);
-    let turned_end = -way * level(ahead.abs());
+    let turned = share * slid - (1.0 - share) * way * level(0.5 * ahead.abs());
+    let turned_end = -way * level((free - compliance * turned).abs());
     let pauses = before.max(-at_rest).min(at_rest);
     let carried = choose(free == 0.0, pauses, level(free.abs()) * sign(free));
 
@@ -386,7 +390,8 @@ pub(super) fn dry_force(
     let stops = rests | ((free - start).abs() <= holds);
     let mean = choose(slides, slid, choose(stops, stuck, turned));
     let stopped_end = choose(rests, stuck, (free - start) / compliance);
-    let end = choose(slides, slid, choose(stops, stopped_end, turned_end));
+    let slid_end = way * level(speed);
+    let end = choose(slides, slid_end, choose(stops, stopped_end, turned_end));
     Dry {
         mean: choose(prescribed, carried, mean),
         end: choose(prescribed, carried, end),
