@@ -1,6 +1,6 @@
-//! Single effects fitted from afar.
+//! Effects fitted from afar.
 //!
-//! Where no single effect explains a gap, it may be that the right one was fitted from the wrong side of
+//! Where no single effect explains a gap, nor a pair, it may be that the right one was fitted from the wrong side of
 //! a ridge, or from a size at which it does something else. Effects of the machine are then simulated at
 //! many values, spread over two decades about their starting values, and fitted from the best of them; a clock that
 //! leaves no line is swept over its range.
@@ -31,13 +31,15 @@ const STEPS: usize = 30;
 const PRIMES: [usize; 6] = [2, 3, 5, 7, 11, 13];
 
 impl Search<'_> {
-    /// Every single effect of the machine, fitted from the best of many values. Best first.
+    /// Every effect of the machine beside those of `base`, fitted from the best of many values. Best first.
     pub(crate) fn fit_from_afar(
         &self,
         base: &Hypothesis,
         linear: &Base<'_>,
     ) -> Result<Vec<Hypothesis>, EstimateError> {
-        let scored = self.candidates.par_iter().map(|(candidate, scale)| {
+        let candidates = self.candidates.par_iter();
+        let free = candidates.filter(|(candidate, _)| !base.rules_out(candidate));
+        let scored = free.map(|(candidate, scale)| {
             let effect = candidate.effect;
             let (scores, most) = if effect.clock().is_some() {
                 // The next best is beside the best.

@@ -21,6 +21,8 @@ use crate::out_of_sight::{spring_to_ground, without_limits};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
+/// Of single effects that are tried with a second one from afar.
+const FAR_PAIRS: usize = 2;
 /// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Steps of a rough fit, and of one of the search that is finished.
@@ -414,8 +416,16 @@ impl<'a> Search<'a> {
             step(["pairs of effects", "sets of three"][size]);
             let mut next: Vec<Hypothesis> = Vec::new();
             let shown = front.iter().filter(|set| self.shows(set));
-            for survivor in shown.take(*survivors) {
+            let shown: Vec<&Hypothesis> = shown.take(*survivors).collect();
+            for survivor in &shown {
                 next.extend(self.extend(survivor, FITTED[size + 1])?);
+            }
+            if size == 0 && !is_told(&next) {
+                step("pairs from afar");
+                for survivor in shown.into_iter().take(FAR_PAIRS) {
+                    let linear = linearise_at(self.problem, &survivor.fit, &self.weights)?;
+                    next.extend(self.fit_from_afar(survivor, &linear)?);
+                }
             }
             sort(&mut next);
             unique(&mut next);

@@ -152,9 +152,11 @@ impl Effect for AttachedMode {
     }
 
     /// A lighter one is no mass but a force that dies away, carried by a start kilometres off; one that does not
-    /// ring is a force that lags the motion, and no mode.
+    /// ring is a force that lags the motion, and no mode; nor does a record show one above half its sample rate.
     fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
-        values[0] >= LIGHTEST * scale.mass_kg && values[2] < RINGS
+        values[0] >= LIGHTEST * scale.mass_kg
+            && values[1] < 0.5 / scale.time_step_s
+            && values[2] < RINGS
     }
 
     /// One too light to be excited by its host, which rings by its start alone; one too heavy to be moved, and so a
@@ -256,14 +258,16 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_ring_is_no_mode() {
+    fn what_does_not_ring_or_rings_between_the_samples_is_no_mode() {
         let scale = SiteScale::plain(1e-3, 0.1, 100.0);
-        let is_mode = |damping_ratio: f64| {
-            let values = [0.1 * scale.mass_kg, 5.0, damping_ratio, 0.0, 0.0];
+        let nyquist_hz = 0.5 / scale.time_step_s;
+        let is_mode = |freq_hz: f64, damping_ratio: f64| {
+            let values = [0.1 * scale.mass_kg, freq_hz, damping_ratio, 0.0, 0.0];
             AttachedMode.keeps_its_meaning(&values, &scale)
         };
-        assert!(is_mode(0.3));
-        assert!(!is_mode(1.1));
+        assert!(is_mode(0.9 * nyquist_hz, 0.3));
+        assert!(!is_mode(0.9 * nyquist_hz, 1.1));
+        assert!(!is_mode(1.3 * nyquist_hz, 0.3));
     }
 
     #[test]
