@@ -74,6 +74,12 @@ pub(crate) fn unique(hypotheses: &mut Vec<Hypothesis>) {
     hypotheses.retain(|hypothesis| seen.insert(hypothesis.key()));
 }
 
+/// Sorts, and keeps the first of each set.
+pub(crate) fn rank(hypotheses: &mut Vec<Hypothesis>) {
+    sort(hypotheses);
+    unique(hypotheses);
+}
+
 /// A start with one more effect. A nominal parameter that becomes an effect loses its prior.
 pub(crate) fn add(start: &Start, effect: Placed) -> Start {
     let mut next = start.clone();

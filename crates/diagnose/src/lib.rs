@@ -78,6 +78,7 @@ mod lines;
 mod locate;
 mod out_of_sight;
 mod outcome;
+mod pairs;
 mod parity;
 mod pipeline;
 mod refuted;

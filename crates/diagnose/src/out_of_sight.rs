@@ -10,7 +10,7 @@ use simgap_model::{GROUND, Location};
 
 use crate::difference::{identified, replacement};
 use crate::evidence::{is_nominal, probabilities};
-use crate::hypothesis::{Hypothesis, add_scored, name, remove, sort, unique};
+use crate::hypothesis::{Hypothesis, add_scored, name, rank, remove};
 use crate::search::Search;
 use crate::verdict::{INDISTINGUISHABLE, Judged, Swap};
 
@@ -97,8 +97,7 @@ pub(crate) fn add_rivals_out_of_sight(
         let lacks = |rival: &&Hypothesis| !rival.key().contains(&name(&judged.placed));
         let all = found.iter().flat_map(|(rivals, _)| rivals);
         let mut rivals: Vec<Hypothesis> = all.filter(lacks).cloned().collect();
-        sort(&mut rivals);
-        unique(&mut rivals);
+        rank(&mut rivals);
         rivals.retain(|rival| identified(rival, settled));
         let mut evidence = vec![settled.evidence];
         evidence.extend(rivals.iter().map(|rival| rival.evidence));

@@ -15,14 +15,12 @@ use simgap_model::Location;
 
 use crate::accuracy::accuracy;
 use crate::evidence::{effective_samples, evidence, freedom};
-use crate::hypothesis::{Hypothesis, add_scored, name, prior_score, pull, replace, sort, unique};
+use crate::hypothesis::{Hypothesis, add_scored, name, prior_score, pull, rank, replace};
 use crate::input_noise::{InputNoise, input_noise};
 use crate::out_of_sight::{spring_to_ground, without_limits};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
-/// Of single effects that are tried with a second one from afar.
-const FAR_PAIRS: usize = 2;
 /// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Steps of a rough fit, and of one of the search that is finished.
@@ -270,8 +268,7 @@ impl<'a> Search<'a> {
         let mut fitted = self.fit_steps(&promising, base, MOST_STEPS)?;
         fitted.extend(rough);
         fitted.extend(rest);
-        sort(&mut fitted);
-        unique(&mut fitted);
+        rank(&mut fitted);
         Ok(fitted)
     }
 
@@ -303,8 +300,7 @@ impl<'a> Search<'a> {
             fitted.extend(fit(&winding, factor * most_steps));
         }
         fitted.retain(|set| self.is_hypothesis(set));
-        sort(&mut fitted);
-        unique(&mut fitted);
+        rank(&mut fitted);
         Ok(fitted)
     }
 
@@ -406,29 +402,24 @@ impl<'a> Search<'a> {
             pool.extend(self.fit_from_afar(base, &linear)?);
         }
         pool.extend(self.fit_out_of_sight(base, &pool, &linear)?);
-        sort(&mut pool);
-        unique(&mut pool);
+        rank(&mut pool);
         let mut front = pool.clone();
         for (size, survivors) in SURVIVORS.iter().enumerate() {
             if is_told(&pool) {
                 break;
             }
             step(["pairs of effects", "sets of three"][size]);
-            let mut next: Vec<Hypothesis> = Vec::new();
             let shown = front.iter().filter(|set| self.shows(set));
             let shown: Vec<&Hypothesis> = shown.take(*survivors).collect();
+            let mut next: Vec<Hypothesis> = Vec::new();
             for survivor in &shown {
                 next.extend(self.extend(survivor, FITTED[size + 1])?);
             }
             if size == 0 && !is_told(&next) {
                 step("pairs from afar");
-                for survivor in shown.into_iter().take(FAR_PAIRS) {
-                    let linear = linearise_at(self.problem, &survivor.fit, &self.weights)?;
-                    next.extend(self.fit_from_afar(survivor, &linear)?);
-                }
+                next.extend(self.extend_from_afar(&shown)?);
             }
-            sort(&mut next);
-            unique(&mut next);
+            rank(&mut next);
             pool.extend(next.iter().cloned());
             front = next;
         }
@@ -444,8 +435,12 @@ impl<'a> Search<'a> {
             pool.extend(beside.unwrap_or_default());
             pool.extend(found);
         }
-        sort(&mut pool);
-        unique(&mut pool);
+        rank(&mut pool);
+        if !is_told(&pool) {
+            step("pairs of fitted effects");
+            pool.extend(self.unite(&pool)?);
+            rank(&mut pool);
+        }
         Ok(pool)
     }
 }

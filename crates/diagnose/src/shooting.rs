@@ -17,7 +17,7 @@ use simgap_estimate::{
 };
 use simgap_model::Location;
 
-use crate::hypothesis::{Hypothesis, sort, unique};
+use crate::hypothesis::{Hypothesis, rank, sort};
 use crate::search::Search;
 use crate::stretches::bounds;
 
@@ -80,8 +80,7 @@ impl Search<'_> {
         let linear = linearise_at(&problem, &begun.fit, &search.weights)?;
         let mut found = search.extend_at(&begun, &linear, FITTED)?;
         found.extend(search.fit_from_afar(&begun, &linear)?);
-        sort(&mut found);
-        unique(&mut found);
+        rank(&mut found);
         found.truncate(FINISHED);
         Ok(found.into_iter().map(|set| set.fit.estimate).collect())
     }

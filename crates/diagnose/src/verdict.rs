@@ -11,7 +11,7 @@ use crate::difference::{
     relevant, relevant_beyond_special_case, replacement,
 };
 use crate::evidence::{freedom, probabilities};
-use crate::hypothesis::{Hypothesis, bends, name, remove, sort, unique};
+use crate::hypothesis::{Hypothesis, bends, name, rank, remove};
 use crate::jumps::brings_jumps_alone;
 use crate::out_of_sight::turns_into;
 use crate::search::Search;
@@ -287,8 +287,7 @@ fn judge_effect(
         let key = rival.key();
         key != set.key() && !former.refused.contains(&key) && (is_behind || search.shows(rival))
     });
-    sort(&mut rivals);
-    unique(&mut rivals);
+    rank(&mut rivals);
     let mut each = vec![set.evidence, subset.evidence];
     each.extend(rivals.iter().map(|rival| rival.evidence));
     // The set, the set without the effect, then the rivals.
