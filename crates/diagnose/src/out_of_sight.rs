@@ -8,9 +8,9 @@ use simgap_effects::{Effect, Placed};
 use simgap_estimate::{Base, EstimateError, Start, score_outright};
 use simgap_model::{GROUND, Location};
 
-use crate::difference::{identified, replacement};
+use crate::difference::{identified, relevant, replacement};
 use crate::evidence::{is_nominal, probabilities};
-use crate::hypothesis::{Hypothesis, add_scored, name, rank, remove};
+use crate::hypothesis::{Hypothesis, add_scored, name, rank, remove, sort};
 use crate::search::Search;
 use crate::verdict::{INDISTINGUISHABLE, Judged, Swap};
 
@@ -99,6 +99,13 @@ pub(crate) fn add_rivals_out_of_sight(
         let mut rivals: Vec<Hypothesis> = all.filter(lacks).cloned().collect();
         rank(&mut rivals);
         rivals.retain(|rival| identified(rival, settled));
+        for rival in &mut rivals {
+            if !relevant(search, &rival.fit, &settled.fit) {
+                // It moves nothing that counts: as likely as the parameter at the most.
+                rival.evidence = rival.evidence.min(settled.evidence);
+            }
+        }
+        sort(&mut rivals);
         let mut evidence = vec![settled.evidence];
         evidence.extend(rivals.iter().map(|rival| rival.evidence));
         let shares = probabilities(&evidence);

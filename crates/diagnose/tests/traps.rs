@@ -63,6 +63,22 @@ fn verify_a_hidden_mode_is_not_taken_for_delay_and_damping() {
     assert!(gap.corrected < 1.1 * gap.noise_floor, "{gap:?}");
 }
 
+/// What a hidden mode shows is asked with the weights that it was fitted with: once its rivals are weighed anew, a sensor's
+/// bias beside it must not cost it its place.
+#[test]
+fn verify_a_hidden_mode_keeps_its_place_beside_a_bias() {
+    let at = Location::Mass("base".into());
+    let mode = placed("attached_mode", at.clone(), &[0.25, 9.0, 0.03, 0.0, 0.0]);
+    let bias = placed("sensor_bias", channel("x"), &[-2e-3]);
+    let outcome = diagnosed(&[mode, bias], &[]);
+    let found = named(&outcome);
+    assert!(found.contains(&("attached_mode".into(), at)), "{found:?}");
+    // A constant force on the mass above does the same to both channels.
+    assert_eq!(found.len(), 2, "{found:?}");
+    let gap = &outcome.diagnosis.gap;
+    assert!(gap.corrected < 1.1 * gap.noise_floor, "{gap:?}");
+}
+
 /// A gain can be swallowed by masses, stiffnesses and dampings together. They stay where they are.
 #[test]
 fn verify_a_gain_is_not_swallowed_by_parameters() {
