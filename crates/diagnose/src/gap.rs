@@ -83,22 +83,39 @@ pub(crate) fn stepped(problem: &Problem, effects: &[Placed]) -> Vec<bool> {
 /// Variance of the white noise in each channel of discrepancies, over all runs.
 ///
 /// Where values are stored in steps, noise moves some of them by a step and most not at all: there
-/// the robust estimate would be zero.
+/// the robust estimate would be zero. Samples that are clipped, lost or struck hold no noise and say nothing of that of
+/// the others.
 pub(crate) fn noise_variance(discrepancy: &[Vec<Vec<f64>>], stepped: &[bool]) -> Vec<f64> {
     (0..stepped.len())
         .map(|c| {
             let (mut square, mut count) = (0.0, 0.0);
             for run in discrepancy {
-                let sigma = match white_noise_std(&run[c]) {
-                    Ok(noise) if !stepped[c] => noise.std,
-                    _ => short_noise(&run[c]),
-                };
-                square += sigma * sigma * run[c].len() as f64;
                 count += run[c].len() as f64;
+                let noisy = match stepped[c] {
+                    true => run[c].clone(),
+                    false => noisy(&run[c]),
+                };
+                let sigma = match white_noise_std(&noisy) {
+                    Ok(noise) if !stepped[c] => noise.std,
+                    _ => short_noise(&noisy),
+                };
+                square += sigma * sigma * noisy.len() as f64;
             }
             square / f64::max(count, 1.0)
         })
         .collect()
+}
+
+/// The discrepancies that hold noise: those of clipped, lost or struck samples are zero, or repeat themselves.
+fn noisy(discrepancy: &[f64]) -> Vec<f64> {
+    let repeats = |n: usize, other: Option<usize>| {
+        other.is_some_and(|other| discrepancy.get(other) == Some(&discrepancy[n]))
+    };
+    let holds_noise = |&n: &usize| {
+        discrepancy[n] != 0.0 && !repeats(n, n.checked_sub(1)) && !repeats(n, Some(n + 1))
+    };
+    let held = (0..discrepancy.len()).filter(holds_noise);
+    held.map(|n| discrepancy[n]).collect()
 }
 
 /// Noise of a run too short for the robust estimates, from its second differences, whose variance is
@@ -182,6 +199,24 @@ impl Gap {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn verify_clipped_samples_hold_no_noise() {
+        let mut word = 7_u64;
+        let mut unit = || {
+            word = word
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (word >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let noise: Vec<f64> = (0..8000).map(|_| 12_f64.sqrt() * unit()).collect();
+        // Two thirds of the samples clipped, at a level that is not quite known.
+        let clipped = (0..8000).map(|n| if n % 60 < 40 { 1e-3 } else { noise[n] });
+        let run = vec![clipped.collect::<Vec<f64>>()];
+        let of = |stepped: bool| noise_variance(std::slice::from_ref(&run), &[stepped])[0];
+        assert!((3.0 * of(false) - 1.0).abs() < 0.2, "{}", of(false));
+        assert!(of(true) > 0.0);
+    }
 
     #[test]
     fn verify_closed_figures_of_the_contract() {
