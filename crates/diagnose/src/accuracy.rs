@@ -9,8 +9,11 @@
 //! sixteen times for a smooth input, by half for one with steps. Noise of inputs shows in (1) alike.
 
 use rayon::prelude::*;
+use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, Problem};
 use simgap_simulate::Run;
+
+use crate::gap::total;
 
 /// Bounds of δ over the standard deviation of a channel: there is more to a simulation than its inputs, and a
 /// coarse input is no leave to overlook everything.
@@ -18,15 +21,52 @@ const BOUNDS: [f64; 2] = [2e-4, 1.5e-3];
 /// How many times less a curve through samples at half the distance misses, of an input with steps and of a smooth one.
 const RATIOS: [f64; 2] = [2.0, 16.0];
 
+/// Largest δ of a record by which a set is judged, over the standard deviation of a channel.
+const MOST_OF_CHECK: f64 = 0.02;
+
 /// δ_c of each channel, in its unit, for the model of a fit; within [`BOUNDS`] of the standard deviations.
 pub(crate) fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError> {
+    let estimate = &fit.estimate;
+    let delta = between_samples(problem, &estimate.nominal, &estimate.initial)?;
+    let [least, most] = BOUNDS;
+    let std = problem.output_std().into_iter();
+    // A channel that does not move has no bounds to keep; NaN is off by as much as may be.
+    let bounded = |(delta, std): (f64, f64)| match delta < most * std {
+        true => delta.max(least * std),
+        false => most * std,
+    };
+    Ok(delta.into_iter().zip(std).map(bounded).collect())
+}
+
+/// δ over the motion, of all channels together, on records by which a set is judged: their inputs may be sampled worse
+/// than those that it was fitted to.
+pub(crate) fn accuracy_of_check(
+    check: &Problem,
+    placed: &[Placed],
+    initial: &[Vec<f64>],
+) -> Result<f64, EstimateError> {
+    let delta = between_samples(check, placed, initial)?;
+    let shares = delta.iter().zip(check.output_std());
+    let shares: Vec<f64> = shares
+        .map(|(delta, std)| (delta / std).min(MOST_OF_CHECK))
+        .map(|share| if share.is_finite() { share } else { 0.0 })
+        .collect();
+    Ok(total(&shares))
+}
+
+/// δ_c by (1) for a model from given states.
+fn between_samples(
+    problem: &Problem,
+    placed: &[Placed],
+    initial: &[Vec<f64>],
+) -> Result<Vec<f64>, EstimateError> {
     let moved = problem
         .runs
         .par_iter()
+        .zip(initial)
         .enumerate()
-        .map(|(r, run)| {
-            let simulator = problem.simulator(&fit.estimate.nominal, r)?;
-            let initial = &fit.estimate.initial[r];
+        .map(|(r, (run, initial))| {
+            let simulator = problem.simulator(placed, r)?;
             let coarse = thinned(run, 1);
             let coarser = thinned(&thinned(run, 2), 1);
             let fine = simulator.predict(run, initial)?;
@@ -42,22 +82,14 @@ pub(crate) fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, Estimat
         })
         .collect::<Result<Vec<Vec<[f64; 2]>>, EstimateError>>()?;
     let count: usize = problem.runs.iter().map(|run| run.len).sum();
-    let of_channel = |(c, std): (usize, f64)| {
+    let of_channel = |c: usize| {
         let rms = |which: usize| {
             let square: f64 = moved.iter().map(|run| run[c][which]).sum();
             (square / count.max(1) as f64).sqrt()
         };
-        let delta = beyond(rms(0), rms(1));
-        let [least, most] = BOUNDS.map(|bound| bound * std);
-        // A channel that does not move has no bounds to keep; NaN is off by as much as may be.
-        if delta < most { delta.max(least) } else { most }
+        beyond(rms(0), rms(1))
     };
-    Ok(problem
-        .output_std()
-        .into_iter()
-        .enumerate()
-        .map(of_channel)
-        .collect())
+    Ok((0..problem.model.outputs.len()).map(of_channel).collect())
 }
 
 fn squared_distance(one: &[f64], other: &[f64]) -> f64 {

@@ -185,9 +185,10 @@ pub(crate) fn gap(
 }
 
 impl Gap {
-    /// The same gap over all noise there is, that of the inputs too: what a set is judged by.
-    pub(crate) fn over_all_noise(&self) -> Gap {
-        let noise_floor = self.noise_floor.hypot(self.input_noise);
+    /// The same gap over all noise there is, that of the inputs too, and over `unknown`, what they leave open between
+    /// their samples: what a set is judged by.
+    pub(crate) fn over_all_noise(&self, unknown: f64) -> Gap {
+        let noise_floor = self.noise_floor.hypot(self.input_noise).hypot(unknown);
         Gap {
             noise_floor,
             closed: closed(self.nominal, self.corrected, noise_floor),

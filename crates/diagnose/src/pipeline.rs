@@ -7,6 +7,7 @@ use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
 use simgap_simulate::substeps_for;
 
+use crate::accuracy::accuracy_of_check;
 use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::difference::{SEEN, is_told_from_none};
@@ -148,9 +149,10 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     };
     let mut gap = gap_of(&placed, &predictions, 2)?;
     // What it is judged by.
+    let unknown = accuracy_of_check(&check, known, &predictions[1].initial)?;
     let between = |answer: &Answer, placed: &[Placed], predictions: &[Prediction], gap: &Gap| {
         let between = jumps::gap_between(&check, &answer.set, (placed, predictions), gap);
-        between.as_ref().unwrap_or(gap).over_all_noise()
+        between.as_ref().unwrap_or(gap).over_all_noise(unknown)
     };
     let mut judged_by = between(&answer, &placed, &predictions, &gap);
     // A law that fails on the check records, or another motion of the same law?

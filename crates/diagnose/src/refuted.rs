@@ -41,7 +41,7 @@ mod tests {
             closed: 0.0,
             channels: vec![],
         }
-        .over_all_noise()
+        .over_all_noise(0.0)
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub(crate) fn gap_followed_anew(
     let driven = input_noise(&cut, corrected, weights, &check.runs)?;
     let gap = gap(&cut, &predictions[0], &predictions[1], last, &driven);
     let between = gap_of_check_between(&cut, (corrected, &predictions), &gap);
-    let follows = follows(&between.as_ref().unwrap_or(&gap).over_all_noise());
+    let follows = follows(&between.as_ref().unwrap_or(&gap).over_all_noise(0.0));
     Ok(Some(gap).filter(|_| follows))
 }
 
@@ -57,7 +57,7 @@ pub(crate) fn told(gap: &Gap) -> String {
         "over a whole check record the corrected model goes its own way: the motion hangs on differences that no estimate resolves; started anew in every stretch it leaves {:.3} of it, parameters alone {:.3}, noise {:.3}",
         gap.corrected,
         gap.recalibrated,
-        gap.over_all_noise().noise_floor
+        gap.over_all_noise(0.0).noise_floor
     )
 }
 
