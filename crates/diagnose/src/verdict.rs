@@ -1,7 +1,7 @@
 //! From fitted sets to an answer: what earns its place, what rivals it, what is left.
 
 use rayon::prelude::*;
-use simgap_effects::{Equivalent, Placed, SiteScale, same_place};
+use simgap_effects::{Equivalent, Placed, SiteScale, likelier_line, same_place};
 use simgap_estimate::{EstimateError, Start};
 
 use crate::common_cause::is_common_cause;
@@ -329,7 +329,9 @@ fn judge_effect(
     // A simpler rival that is about as likely is the better name, and so is the parameter that dynamics turn into
     // whose mode no record shows; one as rich must lead.
     let handicap = |rival: &Hypothesis| {
-        if let Some(lead) = must_lead(search, set, rival) {
+        if let Some(lead) = lead_of_line(search, set, rival, &judged) {
+            lead
+        } else if let Some(lead) = must_lead(search, set, rival) {
             -lead
         } else if let Some(lead) = must_lead(search, rival, set) {
             lead
@@ -339,8 +341,29 @@ fn judge_effect(
             TIE
         }
     };
-    let mut better = rivals
-        .into_iter()
-        .filter(|rival| rival.evidence > set.evidence + handicap(rival));
-    Ok((judged, better.next()))
+    let mut better = rivals.into_iter();
+    let better = better.find(|rival| rival.evidence > set.evidence + handicap(rival));
+    Ok((judged, better))
+}
+
+/// By how much a rival must lead what is named where a line is the work of either, whatever the data, and its frequency
+/// speaks for one of them.
+fn lead_of_line(
+    search: &Search<'_>,
+    set: &Hypothesis,
+    rival: &Hypothesis,
+    named: &Judged,
+) -> Option<f64> {
+    let own = named.placed.effect.kind();
+    let new = replacement(set, rival)?;
+    let is_same =
+        |other: &Equivalent| other.kind == new.effect.kind() && same_place(&other.at, &new.at);
+    if own == new.effect.kind() || !named.same.iter().any(is_same) {
+        return None;
+    }
+    let likelier = likelier_line(&named.placed, &search.problem.model)?;
+    Some(match likelier == own {
+        true => INDISTINGUISHABLE,
+        false => -INDISTINGUISHABLE,
+    })
 }

@@ -1,6 +1,6 @@
 //! The same thing by another name.
 
-use simgap_model::{InputKind, Location, Model, OutputKind};
+use simgap_model::{InputKind, Location, Model, OutputKind, damped_modes};
 
 use crate::{Action, Placed, same_place};
 
@@ -168,6 +168,33 @@ fn soft_stop(placed: &Placed, model: &Model) -> Option<Equivalent> {
     })
 }
 
+/// Multiple of the highest natural frequency above which a plant hardly answers a force.
+const BEYOND_THE_PLANT: f64 = 2.0;
+/// Mains, and how far off they may be.
+const MAINS_HZ: [f64; 2] = [50.0, 60.0];
+const MAINS_OFF: f64 = 0.005;
+
+/// Which of the two a line is likelier to be where a harmonic force and a tone picked up by the only sensor do the same:
+/// a tone at the frequency of mains or far above the modes of the plant, which would have to be shaken by a large force
+/// to answer there, and a force below. `None` for other effects.
+#[must_use]
+pub fn likelier_line(placed: &Placed, model: &Model) -> Option<&'static str> {
+    let kinds = ["harmonic_force", "tone_pickup"];
+    if !kinds.contains(&placed.effect.kind()) {
+        return None;
+    }
+    let mut named = placed.effect.parameters().iter().zip(&placed.values);
+    let (_, &frequency) = named.find(|(parameter, _)| parameter.name == "frequency_hz")?;
+    let modes = damped_modes(&model.tangent_matrices().ok()?).ok()?;
+    let highest = modes
+        .iter()
+        .map(|mode| mode.natural_freq_hz)
+        .fold(0.0, f64::max);
+    let is_mains = |mains: f64| (frequency / mains - 1.0).abs() < MAINS_OFF;
+    let is_tone = frequency > BEYOND_THE_PLANT * highest || MAINS_HZ.into_iter().any(is_mains);
+    Some(kinds[usize::from(is_tone)])
+}
+
 /// Effects that do the same, and why.
 type Class = (Vec<(&'static str, Location)>, &'static str);
 
@@ -278,4 +305,40 @@ fn commuting(model: &Model) -> Vec<Class> {
         ));
     }
     classes
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::find;
+
+    #[test]
+    fn a_line_far_above_the_modes_or_at_mains_is_a_tone() {
+        // One mode at 20 Hz.
+        let text = "schema = \"simgap-model/1\"\nname = \"table\"\n\
+            [[mass]]\nname = \"table\"\nvalue = 1.0\n\
+            [[spring]]\nname = \"leaf\"\nbetween = [\"table\", \"ground\"]\nstiffness = 15791.0\n\
+            [[output]]\nchannel = \"y\"\nkind = \"displacement\"\nat = \"table\"\n";
+        let model = Model::from_toml(text).unwrap();
+        let force = |frequency_hz: f64| {
+            let effect = find("harmonic_force").unwrap();
+            let at = Location::Mass("table".into());
+            likelier_line(
+                &Placed::new(effect, at, vec![1.0, frequency_hz, 0.0]),
+                &model,
+            )
+        };
+        assert_eq!(force(13.0), Some("harmonic_force"));
+        assert_eq!(force(31.0), Some("harmonic_force"));
+        assert_eq!(force(45.0), Some("tone_pickup"));
+        assert_eq!(force(50.1), Some("tone_pickup"));
+        let bias = Placed::new(
+            find("sensor_bias").unwrap(),
+            Location::Channel("y".into()),
+            vec![1.0],
+        );
+        assert_eq!(likelier_line(&bias, &model), None);
+    }
 }

@@ -36,7 +36,7 @@ pub use catalogue::{catalogue, find};
 pub use effect::{
     Action, Clock, Effect, Family, LINES, LawOfModel, ModelChange, Parameter, SiteKind, SiteScale,
 };
-pub use equivalent::{Equivalent, equivalents, equivalents_beside};
+pub use equivalent::{Equivalent, equivalents, equivalents_beside, likelier_line};
 pub use error::EffectError;
 pub use free::free_laws;
 pub use line::Line;
