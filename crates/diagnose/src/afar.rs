@@ -7,9 +7,12 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Effect, SiteScale};
-use simgap_estimate::{Base, Candidate, EstimateError, Score, Start, score_outright, score_shapes};
+use simgap_estimate::{
+    Base, Candidate, EstimateError, Score, Start, Weights, fit, fit_initial_states, linearise_at,
+    score_outright, score_shapes,
+};
 
-use crate::hypothesis::{Hypothesis, add_scored, name, sort};
+use crate::hypothesis::{Hypothesis, add_scored, is_bent, name, sort, straight};
 use crate::search::Search;
 
 /// Values tried of each effect at each place.
@@ -79,6 +82,32 @@ impl Search<'_> {
             .collect();
         fitted.extend(self.fit_steps(&promising, linear, STEPS)?);
         sort(&mut fitted);
+        Ok(fitted)
+    }
+
+    /// Single effects, fitted from nominal parameters as given where a large gap has bent those of `base`.
+    pub(crate) fn fit_from_given(
+        &self,
+        base: &Hypothesis,
+        most: usize,
+    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        if !is_bent(base) {
+            return Ok(vec![]);
+        }
+        let as_given = fit_initial_states(self.problem, &[], &self.weights)?;
+        let start = Start {
+            effects: vec![],
+            nominal: straight(base),
+            initial: as_given.estimate.initial,
+        };
+        let held = Weights {
+            most_steps: 0,
+            ..self.weights.clone()
+        };
+        let given = self.hypothesis(fit(self.problem, &start, &held)?);
+        let linear = linearise_at(self.problem, &given.fit, &self.weights)?;
+        let mut fitted = self.extend_at(&given, &linear, most)?;
+        fitted.extend(self.fit_from_afar(&given, &linear)?);
         Ok(fitted)
     }
 }

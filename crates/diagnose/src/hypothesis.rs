@@ -129,6 +129,26 @@ pub(crate) fn pull(start: &Start) -> f64 {
     start.nominal.iter().map(pull_of).sum()
 }
 
+/// Pull of the prior from which on nominal parameters are bent: four deviations of one of them, say.
+const BENT: f64 = 8.0;
+
+/// Nominal parameters to look for effects from: those of a set, or as given where a large gap has bent them. Beside the
+/// true law they are near those, and bent ones may lie beyond a ridge.
+pub(crate) fn straight(set: &Hypothesis) -> Vec<Placed> {
+    let mut nominal = set.fit.estimate.nominal.clone();
+    if is_bent(set) {
+        for placed in &mut nominal {
+            placed.values.fill(1.0);
+        }
+    }
+    nominal
+}
+
+/// Whether a set takes the nominal parameters further than anyone is in error about them.
+pub(crate) fn is_bent(set: &Hypothesis) -> bool {
+    pull(&set.fit.estimate) > BENT
+}
+
 /// How much further a set takes the nominal parameters under their prior than another does, by [`pull`].
 pub(crate) fn bends(set: &Hypothesis, other: &Hypothesis) -> f64 {
     pull(&set.fit.estimate) - pull(&other.fit.estimate)

@@ -400,6 +400,7 @@ impl<'a> Search<'a> {
         if !is_told(&pool) {
             step("single effects from afar");
             pool.extend(self.fit_from_afar(base, &linear)?);
+            pool.extend(self.fit_from_given(base, FITTED[0])?);
         }
         pool.extend(self.fit_out_of_sight(base, &pool, &linear)?);
         rank(&mut pool);

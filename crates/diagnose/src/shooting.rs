@@ -17,7 +17,7 @@ use simgap_estimate::{
 };
 use simgap_model::Location;
 
-use crate::hypothesis::{Hypothesis, rank, sort};
+use crate::hypothesis::{Hypothesis, rank, sort, straight};
 use crate::search::Search;
 use crate::stretches::bounds;
 
@@ -71,7 +71,7 @@ impl Search<'_> {
     /// The best single laws, each stretch with an initial state of its own.
     fn fit_to_stretches(&self, base: &Hypothesis, cut: &Cut) -> Result<Vec<Start>, EstimateError> {
         let problem = cut.apply(self.problem);
-        let nominal = &base.fit.estimate.nominal;
+        let nominal = &straight(base);
         let initial = begin(&problem, cut, nominal, &self.weights)?;
         let mut begun = fit_initial_states_from(&problem, nominal, initial, &self.weights)?;
         begun.estimate.nominal.clone_from(nominal);
