@@ -104,6 +104,25 @@ fn check_same(model: &Model, a: &Placed, b: &Placed) {
 }
 
 #[test]
+fn verify_a_late_input_is_a_late_sensor_whatever_the_law() {
+    const SWINGING: &str = r#"
+mass = [{ name = "m1", value = 2.0 }]
+damper = [{ name = "d", between = ["m1", "ground"], damping = 8.0 }]
+pendulum = [{ at = "m1", value = 60.0 }]
+"#;
+    let model = model(SWINGING, "displacement");
+    // Whole samples: between them the two interpolate other signals.
+    let late = place("input_delay", input(), &[0.01]);
+    check_same(&model, &late, &place("sensor_delay", channel(), &[0.01]));
+    let lag = place("input_lag", input(), &[0.01]);
+    assert!(!listed(
+        &model,
+        &lag,
+        &place("sensor_lag", channel(), &[0.01])
+    ));
+}
+
+#[test]
 fn verify_constant_force_is_a_bias_of_the_rest_position() {
     let model = model(SPRUNG, "displacement");
     let force = place("constant_force", mass(), &[16.0]);

@@ -24,7 +24,8 @@ pub struct Equivalent {
 /// | `input_gain` | `sensor_gain` | linear, one input, one output | the response is proportional to the input |
 /// | `input_gain` | `mass_error` | one mass that nothing holds | only force over mass counts |
 /// | `input_gain` | `damping_error`, `stiffness_error` | one member alone on a stand | only their product counts |
-/// | `input_delay`, `input_lag` | `sensor_delay`, `sensor_lag` | linear, one input, one output | linear elements in a row commute |
+/// | `input_delay` | `sensor_delay` | one input, one output | no law of the plant knows the time |
+/// | `input_lag` | `sensor_lag` | linear, one input, one output | linear elements in a row commute |
 /// | `harmonic_force` | `tone_pickup` | linear, one output | the steady response is a tone |
 /// | `presliding_friction` | `hysteresis` | the same place | Dahl's law is Bouc and Wen's with n = 1, γ = 0 |
 /// | `end_stop` on one side, no harder than 4.5 times the spring beside it ([`equivalents_beside`]) | `bilinear_stiffness` | the same place | a soft stop is a spring that is stiffer beyond a point |
@@ -60,6 +61,7 @@ pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> 
     classes.extend(rest_position(model));
     classes.extend(final_speed(model));
     classes.extend(proportional(model));
+    classes.extend(late(model));
     classes.extend(commuting(model));
     let mut found: Vec<Equivalent> = Vec::new();
     for (members, because) in classes {
@@ -88,29 +90,32 @@ pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> 
 }
 
 /// As [`equivalents`] of the i-th of several effects, on the plant as the others leave it: a missing spring
-/// beside the effect holds the plant, a nonlinear force breaks every equivalence.
+/// beside the effect holds the plant, a nonlinear force breaks every equivalence but that of delays.
 #[must_use]
 pub fn equivalents_beside(effects: &[Placed], i: usize, model: &Model) -> Vec<Equivalent> {
     let Some(placed) = effects.get(i) else {
         return vec![];
     };
     let mut model = model.clone();
+    let mut only_delays = false;
     for (j, other) in effects.iter().enumerate() {
         if j == i {
             continue;
         }
         match other.action() {
             Action::Model(change) => change(&mut model, &other.at),
-            Action::Member(_) | Action::Mode { .. } => return vec![],
-            Action::Force(_)
-                if !["constant_force", "harmonic_force"].contains(&other.effect.kind()) =>
-            {
-                return vec![];
+            Action::Member(_) | Action::Mode { .. } => only_delays = true,
+            Action::Force(_) => {
+                only_delays |= !["constant_force", "harmonic_force"].contains(&other.effect.kind());
             }
             _ => {}
         }
     }
     let mut same = equivalents(placed.effect.kind(), &placed.at, &model);
+    if only_delays {
+        same.retain(|other| ["input_delay", "sensor_delay"].contains(&other.kind));
+        return same;
+    }
     same.extend(soft_stop(placed, &model));
     same.retain(|other| other.kind != "hysteresis" || !damps_before_sliding(placed, &model));
     same
@@ -274,6 +279,19 @@ fn proportional(model: &Model) -> Option<Class> {
     Some((members, because))
 }
 
+fn late(model: &Model) -> Option<Class> {
+    let ([input], [output]) = (model.inputs.as_slice(), model.outputs.as_slice()) else {
+        return None;
+    };
+    let members = vec![
+        ("input_delay", Location::Input(input.channel.clone())),
+        ("sensor_delay", Location::Channel(output.channel.clone())),
+    ];
+    let because =
+        "a plant that is driven later answers later, and there is one input and one output";
+    Some((members, because))
+}
+
 fn commuting(model: &Model) -> Vec<Class> {
     let [output] = model.outputs.as_slice() else {
         return vec![];
@@ -284,15 +302,11 @@ fn commuting(model: &Model) -> Vec<Class> {
     let sensor = || Location::Channel(output.channel.clone());
     let mut classes = vec![];
     if let [input] = model.inputs.as_slice() {
-        for (first, last) in [("input_delay", "sensor_delay"), ("input_lag", "sensor_lag")] {
-            classes.push((
-                vec![
-                    (first, Location::Input(input.channel.clone())),
-                    (last, sensor()),
-                ],
-                "linear elements in a row commute, and there is one input and one output",
-            ));
-        }
+        let input = Location::Input(input.channel.clone());
+        classes.push((
+            vec![("input_lag", input), ("sensor_lag", sensor())],
+            "linear elements in a row commute, and there is one input and one output",
+        ));
     }
     if model.dof_count() > 0 {
         let mut tones = vec![("tone_pickup", sensor())];
