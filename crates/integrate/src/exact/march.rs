@@ -7,11 +7,11 @@
 //! z₁ = Φ z₀ + Γ₀ (f₀ − E S₀) + Γ₁ (f₁ − E S₁) − (Γ₀ + Γ₁) E D₁                 (1)
 //! d = Eᵀ x,  v = Eᵀ ẋ                    motion across the elements             (2)
 //! S₁ = φ(d₁, v₁, t₁)                                                            (3)
-//! D₁ ∈ level(|v₁|) Sgn(v₁)                                                      (4)
+//! D₁ ∈ level(½ |v₀| + ½ |v₁|) Sgn(v₁)                                           (4)
 //! ```
 //!
 //! (3) is second order in h. (4) is the non-smooth step of Moreau: sliding friction of constant
-//! level is exact, sticking holds v₁ = 0 without a regularising slope, and D constant over the
+//! level is exact, one that depends on the speed of second order, sticking holds v₁ = 0 without a regularising slope, and D constant over the
 //! step keeps the trapezoidal rule from ringing while it sticks. Through (1) each element sees
 //! its own force: d₁ = d* − C S₁ − G D₁, so that (3) is a scalar equation solved by the secant
 //! method and (4) a projection; several elements are swept until they agree.
