@@ -99,13 +99,15 @@ pub(crate) fn fall(poorer: &Fit, better: &Fit) -> f64 {
 }
 
 /// Whether a single effect is one although parameters alone, bent within what is known of them, leave little for it:
-/// noise and inaccurate simulation leave much less.
+/// noise, that of the inputs too, and inaccurate simulation leave much less.
 pub(crate) fn is_sure(
     search: &Search<'_>,
     single: &Hypothesis,
     parameters: &Hypothesis,
 ) -> Result<bool, EstimateError> {
-    let least = search.accuracy.iter().map(|off| SURELY_MOVES * off);
+    let accuracy = search.accuracy.iter().map(|off| SURELY_MOVES * off);
+    let driven = driven(search, &single.fit.variance);
+    let least = accuracy.zip(driven).map(|(off, driven)| driven.max(off));
     let mut channels = moved(&single.fit, &parameters.fit).zip(least);
     if !parameters.effects().is_empty()
         || single.evidence - parameters.evidence < SURE

@@ -6,6 +6,8 @@ use crate::Gap;
 const HARMS: f64 = 1.05;
 /// What leaves less than this multiple of all noise, that of the inputs too, may be nothing but noise.
 const MAY_BE_NOISE: f64 = 1.2;
+/// What the noise of the inputs does counts here from this part of the other noise, in squares.
+const DRIVEN: f64 = 0.3;
 /// Smallest part of what the noise of the inputs may have left of the check records that a set must close there, in
 /// squares. Such noise looks like an effect in the records that were learned from, and in others like another one.
 const CLOSES: f64 = 0.5;
@@ -21,7 +23,7 @@ pub(crate) fn is_refuted(gap: &Gap) -> bool {
     ]
     .map(|rms| rms * rms);
     let white = noise - driven;
-    let may_be_noise = driven > white && recalibrated < MAY_BE_NOISE.powi(2) * noise;
+    let may_be_noise = driven > DRIVEN * white && recalibrated < MAY_BE_NOISE.powi(2) * noise;
     let closes = recalibrated - corrected >= CLOSES * (recalibrated - white);
     gap.corrected > HARMS * gap.recalibrated || may_be_noise && !closes
 }
@@ -60,5 +62,7 @@ mod tests {
         assert!(is_refuted(&gap([0.0262, 0.0255], noise)));
         assert!(!is_refuted(&gap([0.0262, 0.008], noise)));
         assert!(!is_refuted(&gap([0.1, 0.08], noise)));
+        // A little of it beside more of the sensor is enough.
+        assert!(is_refuted(&gap([0.00983, 0.00986], [0.00888, 0.0076])));
     }
 }
