@@ -93,7 +93,7 @@ pub(crate) fn noise_variance(discrepancy: &[Vec<Vec<f64>>], stepped: &[bool]) ->
                 count += run[c].len() as f64;
                 let noisy = match stepped[c] {
                     true => run[c].clone(),
-                    false => noisy(&run[c]),
+                    false => holding_noise(&run[c]),
                 };
                 let sigma = match white_noise_std(&noisy) {
                     Ok(noise) if !stepped[c] => noise.std,
@@ -107,7 +107,7 @@ pub(crate) fn noise_variance(discrepancy: &[Vec<Vec<f64>>], stepped: &[bool]) ->
 }
 
 /// The discrepancies that hold noise: those of clipped, lost or struck samples are zero, or repeat themselves.
-fn noisy(discrepancy: &[f64]) -> Vec<f64> {
+fn holding_noise(discrepancy: &[f64]) -> Vec<f64> {
     let repeats = |n: usize, other: Option<usize>| {
         other.is_some_and(|other| discrepancy.get(other) == Some(&discrepancy[n]))
     };

@@ -181,7 +181,7 @@ const MAINS_OFF: f64 = 0.005;
 
 /// Which of the two a line is likelier to be where a harmonic force and a tone picked up by the only sensor do the same:
 /// a tone at the frequency of mains or far above the modes of the plant, which would have to be shaken by a large force
-/// to answer there, and a force below. `None` for other effects.
+/// to answer there, and a force below. `None` for other effects, and on a plant that does not vibrate.
 #[must_use]
 pub fn likelier_line(placed: &Placed, model: &Model) -> Option<&'static str> {
     let kinds = ["harmonic_force", "tone_pickup"];
@@ -196,8 +196,11 @@ pub fn likelier_line(placed: &Placed, model: &Model) -> Option<&'static str> {
         .map(|mode| mode.natural_freq_hz)
         .fold(0.0, f64::max);
     let is_mains = |mains: f64| (frequency / mains - 1.0).abs() < MAINS_OFF;
-    let is_tone = frequency > BEYOND_THE_PLANT * highest || MAINS_HZ.into_iter().any(is_mains);
-    Some(kinds[usize::from(is_tone)])
+    if MAINS_HZ.into_iter().any(is_mains) {
+        return Some("tone_pickup");
+    }
+    let is_tone = frequency > BEYOND_THE_PLANT * highest;
+    (highest > 0.0).then(|| kinds[usize::from(is_tone)])
 }
 
 /// Effects that do the same, and why.
@@ -348,6 +351,18 @@ mod tests {
         assert_eq!(force(31.0), Some("harmonic_force"));
         assert_eq!(force(45.0), Some("tone_pickup"));
         assert_eq!(force(50.1), Some("tone_pickup"));
+        let mut axis = model.clone();
+        axis.springs.clear();
+        let drive = Placed::new(
+            find("harmonic_force").unwrap(),
+            Location::Mass("table".into()),
+            vec![1.0, 13.0, 0.0],
+        );
+        assert_eq!(
+            likelier_line(&drive, &axis),
+            None,
+            "a free mass has no modes"
+        );
         let bias = Placed::new(
             find("sensor_bias").unwrap(),
             Location::Channel("y".into()),
