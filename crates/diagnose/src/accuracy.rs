@@ -29,13 +29,17 @@ pub(crate) fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, Estimat
     let estimate = &fit.estimate;
     let delta = between_samples(problem, &estimate.nominal, &estimate.initial)?;
     let [least, most] = BOUNDS;
+    // Of filtered discrepancies it is the same share.
     let std = problem.output_std().into_iter();
+    let filtered = std.clone().zip(problem.motion_std());
+    let delta = delta.into_iter().zip(filtered);
+    let delta = delta.map(|(delta, (filtered, std))| delta * filtered / std);
     // A channel that does not move has no bounds to keep; NaN is off by as much as may be.
     let bounded = |(delta, std): (f64, f64)| match delta < most * std {
         true => delta.max(least * std),
         false => most * std,
     };
-    Ok(delta.into_iter().zip(std).map(bounded).collect())
+    Ok(delta.zip(std).map(bounded).collect())
 }
 
 /// δ over the motion, of all channels together, on records by which a set is judged: their inputs may be sampled worse

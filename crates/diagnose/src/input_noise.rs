@@ -62,13 +62,54 @@ pub(crate) fn input_noise(
     weights: &Weights,
     others: &[Run],
 ) -> Result<Vec<InputNoise>, EstimateError> {
-    let parameters: Vec<Placed> = placed.iter().filter(|p| is_nominal(p)).cloned().collect();
     let nothing = vec![0.0; problem.model.outputs.len()];
     let mut all = vec![InputNoise::default(); nothing.len()];
-    let mut count = 0.0;
+    let count: usize = problem.runs.iter().map(|run| run.len).sum();
+    for drawn in draws(problem, placed, weights, others)? {
+        for (c, (sum, white)) in all.iter_mut().zip(&drawn.white).enumerate() {
+            let squares = drawn.left.iter().map(|draw| square_sum(&draw[c]));
+            let mean = squares.clone().sum::<f64>() / DRAWS as f64;
+            sum.variance += mean;
+            sum.most += squares.fold(0.0, f64::max);
+            let len = drawn.left.first().map_or(0, |draw| draw[c].len());
+            sum.white += (white * len as f64).min(mean);
+        }
+    }
+    let mean = |sum: InputNoise| {
+        let all = [sum.variance, sum.most, sum.white];
+        // A plant that runs away says nothing.
+        if all.iter().any(|square| !square.is_finite()) {
+            return InputNoise::default();
+        }
+        let [variance, most, white] = all.map(|square| square / count.max(1) as f64);
+        InputNoise {
+            variance,
+            most,
+            white,
+        }
+    };
+    Ok(all.into_iter().map(mean).collect())
+}
+
+/// What draws of noise on the inputs do to the outputs of a run.
+pub(crate) struct Drawn {
+    /// r of (1), by draw and channel.
+    pub(crate) left: Vec<Vec<Vec<f64>>>,
+    /// Variance of the white noise that is seen in each channel.
+    white: Vec<f64>,
+}
+
+/// The draws for every run whose inputs have noise, as told for [`input_noise`].
+pub(crate) fn draws(
+    problem: &Problem,
+    placed: &[Placed],
+    weights: &Weights,
+    others: &[Run],
+) -> Result<Vec<Drawn>, EstimateError> {
+    let parameters: Vec<Placed> = placed.iter().filter(|p| is_nominal(p)).cloned().collect();
     let seen: Vec<Vec<Seen>> = problem.runs.iter().chain(others).map(seen).collect();
+    let mut all = vec![];
     for (index, run) in problem.runs.iter().enumerate() {
-        count += run.len as f64;
         let sizes: Vec<f64> = (0..run.inputs.len())
             .map(|k| match seen[index][k] {
                 Seen::Noise(std) => std,
@@ -81,15 +122,17 @@ pub(crate) fn input_noise(
         let simulator = problem.simulator(&parameters, index)?;
         let rest = vec![0.0; simulator.state_len()];
         let clean = simulator.predict(run, &rest)?;
-        let mut white_part = nothing.clone();
+        let mut white = vec![0.0; clean.len()];
         let drawn = (0..DRAWS).map(|draw| {
             let mut noisy = run.clone();
             for (k, (input, size)) in noisy.inputs.iter_mut().zip(&sizes).enumerate() {
                 add_white(input, *size, [index as u64, draw, k as u64]);
             }
             let response = simulator.predict(&noisy, &rest)?;
-            for ((white, noisy), clean) in white_part.iter_mut().zip(&response).zip(&clean) {
-                let moved: Vec<f64> = noisy.iter().zip(clean).map(|(a, b)| a - b).collect();
+            let channels = white.iter_mut().zip(&response).zip(&clean).enumerate();
+            for (c, ((white, noisy), clean)) in channels {
+                let mut moved: Vec<f64> = noisy.iter().zip(clean).map(|(a, b)| a - b).collect();
+                problem.whitening.apply(c, &mut moved);
                 let seen = white_noise_std(&moved).map_or(0.0, |noise| noise.std);
                 *white += seen * seen / DRAWS as f64;
             }
@@ -100,28 +143,12 @@ pub(crate) fn input_noise(
         });
         let drawn = drawn.collect::<Result<Vec<Run>, EstimateError>>()?;
         let left = fit_initial_states(&problem.with_runs(drawn), &parameters, weights)?;
-        for (c, (sum, white)) in all.iter_mut().zip(&white_part).enumerate() {
-            let squares = left.discrepancy.iter().map(|draw| square_sum(&draw[c]));
-            let mean = squares.clone().sum::<f64>() / DRAWS as f64;
-            sum.variance += mean;
-            sum.most += squares.fold(0.0, f64::max);
-            sum.white += (white * run.len as f64).min(mean);
-        }
-    }
-    let mean = |sum: InputNoise| {
-        let all = [sum.variance, sum.most, sum.white];
-        // A plant that runs away says nothing.
-        if all.iter().any(|square| !square.is_finite()) {
-            return InputNoise::default();
-        }
-        let [variance, most, white] = all.map(|square| square / f64::max(count, 1.0));
-        InputNoise {
-            variance,
-            most,
+        all.push(Drawn {
+            left: left.discrepancy,
             white,
-        }
-    };
-    Ok(all.into_iter().map(mean).collect())
+        });
+    }
+    Ok(all)
 }
 
 /// White noise on an input.

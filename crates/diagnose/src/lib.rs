@@ -60,6 +60,7 @@
 mod accuracy;
 mod afar;
 mod answer;
+mod check;
 mod common_cause;
 pub mod compare;
 mod confirm;
@@ -87,11 +88,13 @@ mod rounding;
 mod search;
 mod shooting;
 mod slow;
+mod spread;
 mod stand_in;
 mod stretches;
 mod structure;
 mod unexplained;
 mod verdict;
+mod wander;
 
 pub use diagnosis::*;
 pub use error::DiagnoseError;

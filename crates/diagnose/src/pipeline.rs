@@ -5,17 +5,15 @@ use simgap_effects::{Placed, catalogue};
 use simgap_estimate::{Fit, Problem, Start, Weights, fit, fit_initial_states};
 use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
-use simgap_simulate::substeps_for;
 
-use crate::accuracy::accuracy_of_check;
+use crate::check::{Check, Checked};
 use crate::data::{Data, divide, excerpts};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::difference::{SEEN, is_told_from_none};
 use crate::evidence::{independence, is_nominal};
 use crate::final_fit::fit_to_all;
-use crate::gap::{Prediction, gap, predict, total};
+use crate::gap::total;
 use crate::hypothesis::{Hypothesis, name, remove, sort};
-use crate::input_noise::input_noise;
 use crate::locate::Located;
 use crate::out_of_sight::{add_rivals_out_of_sight, adjusted};
 use crate::outcome::{corrected_model, series};
@@ -23,7 +21,7 @@ use crate::refuted::is_refuted;
 use crate::remainder::{Remainder, remainder};
 use crate::search::Search;
 use crate::verdict::{Judged, earned, judge, prune, simplest};
-use crate::{DiagnoseError, Gap, answer, jumps, locate, stretches, unexplained};
+use crate::{DiagnoseError, answer, locate, stretches, unexplained, wander};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
 const RECALIBRATION_PRIOR: f64 = 0.5;
@@ -70,6 +68,8 @@ pub(crate) struct Answer {
     pub(crate) set: Hypothesis,
     /// The same set fitted to all training samples.
     pub(crate) estimate: Fit,
+    /// What it was fitted with.
+    pub(crate) weights: Weights,
     pub(crate) judged: Vec<Judged>,
     /// What the set leaves.
     pub(crate) remainder: Remainder,
@@ -120,83 +120,69 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         }
     }
     let data = divide(request.model, request.train, request.check)?;
-    let train = Problem::new(request.model, data.train.clone())?;
-    let mut check = train.with_runs(data.check.clone());
-    check.substeps = check
-        .substeps
-        .max(substeps_for(request.model, &check.runs)?);
+    let mut train = Problem::new(request.model, data.train.clone())?;
     let plain = Weights::independent(request.model.outputs.len());
 
     progress("nominal model");
-    let nominal = fit_initial_states(&train, &[], &plain)?;
+    let mut nominal = fit_initial_states(&train, &[], &plain)?;
+    if let Some(whitening) = wander::whitening(&train, &nominal, &plain, &data.check)? {
+        train.whitening = whitening;
+        nominal = fit_initial_states(&train, &[], &plain)?;
+    }
     let recalibrated = recalibrate(request, &train, &nominal, &plain)?;
     let fits = (&nominal, &recalibrated);
     let mut answer = search(request, &train, fits, Scope::Everything, progress)?;
 
     progress("check records");
-    let nominal_placed: Vec<Placed> = vec![];
+    let check = Check::new(&train, &recalibrated, data.check.clone())?;
     let mut placed = answer.placed();
-    let mut predictions = [&nominal_placed, &recalibrated.estimate.nominal, &placed]
-        .into_par_iter()
-        .map(|effects| predict(&check, effects, &plain))
-        .collect::<Result<Vec<_>, _>>()?;
-    let known = &recalibrated.estimate.nominal;
-    let gap_of = |placed: &[Placed], predictions: &[Prediction], last: usize| {
-        let driven = input_noise(&check, placed, &plain, &train.runs)?;
-        let corrected = (placed, &predictions[last]);
-        let gap = gap(&check, &predictions[0], &predictions[1], corrected, &driven);
-        Ok::<_, DiagnoseError>(gap)
-    };
-    let mut gap = gap_of(&placed, &predictions, 2)?;
-    // What it is judged by.
-    let unknown = accuracy_of_check(&check, known, &predictions[1].initial)?;
-    let between = |answer: &Answer, placed: &[Placed], predictions: &[Prediction], gap: &Gap| {
-        let between = jumps::gap_between(&check, &answer.set, (placed, predictions), gap);
-        between.as_ref().unwrap_or(gap).over_all_noise(unknown)
-    };
-    let mut judged_by = between(&answer, &placed, &predictions, &gap);
+    let mut checked = check.of(&answer, &placed)?;
     // A law that fails on the check records, or another motion of the same law?
-    let fails = |answer: &Answer| {
-        is_refuted(&judged_by)
-            || unexplained::leaves_much(&judged_by)
-            || unexplained::is_poor_stand_in(answer, &judged_by)
-    };
-    let anew = if unexplained::has_force(&answer) && fails(&answer) {
-        let anew = stretches::gap_followed_anew(&check, known, &placed, &plain);
-        anew.ok().flatten()
-    } else {
-        None
+    let fails = is_refuted(&checked.judged)
+        || unexplained::leaves_much(&checked.judged)
+        || unexplained::is_poor_stand_in(&answer, &checked.judged);
+    let anew = match unexplained::has_force(&answer) && fails {
+        true => check.followed_anew(&placed),
+        false => None,
     };
     answer.follows_anew = anew.is_some();
-    if is_refuted(&judged_by) && answer.names_more_than_parameters() && !answer.follows_anew {
+    if is_refuted(&checked.judged)
+        && answer.names_more_than_parameters()
+        && !answer.follows_anew
+    {
         // On records it was not fitted to, the set is worse than parameters alone.
         let singles = std::mem::take(&mut answer.singles);
         answer = search(request, &train, fits, Scope::Parameters, progress)?;
         answer.singles = singles;
         placed = answer.placed();
-        predictions[2] = predict(&check, &placed, &plain)?;
-        gap = gap_of(&placed, &predictions, 2)?;
-        judged_by = between(&answer, &placed, &predictions, &gap);
+        checked = check.of(&answer, &placed)?;
     }
+    let (note, known) = (check.note(), &recalibrated.estimate.nominal);
+    let Checked {
+        predictions,
+        gap,
+        judged,
+    } = checked;
     answer.held_back = {
-        let short = check.with_runs(excerpts(&check.runs));
+        let short = check.problem.with_runs(excerpts(&check.problem.runs));
         answer::held_back(&short, &answer.singles, &plain)?
     };
-    let mut verdict = answer::verdict(&train, &answer, &judged_by);
+    let mut verdict = answer::verdict(&train, &answer, &judged);
     let left_unknown = verdict.status == crate::Status::Unknown;
     let (gap, placed, shown) = if left_unknown {
         // Blame nothing: the corrected model is the recalibrated one, or the one as given where that predicts better.
         verdict.effects.clear();
         let shown = usize::from(total(&predictions[1].nrmse) < total(&predictions[0].nrmse));
-        let kept = [&nominal_placed, known][shown].clone();
-        (gap_of(&kept, &predictions, shown)?, kept, shown)
+        let kept = [&vec![], known][shown].clone();
+        (check.gap(&kept, &predictions, shown)?, kept, shown)
     } else {
         (gap, placed, 2)
     };
     let candidates = answer::candidates(&answer, &verdict);
     let floors: Vec<f64> = gap.channels.iter().map(|c| c.noise_floor).collect();
-    let located = Located::new(&check, &predictions[0], &floors);
-    let motions = locate::motions(&check, &predictions[0], &locate_places(request.model))?;
+    let check = &check.problem;
+    let located = Located::new(check, &predictions[0], &floors);
+    let motions = locate::motions(check, &predictions[0], &locate_places(request.model))?;
     let r#where = Where {
         channels: locate::channels(&located),
         locations: answer::locations(&answer, left_unknown),
@@ -206,6 +192,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         records: locate::records(&located),
     };
     let mut notes = notes(request, &data);
+    notes.splice(0..0, note);
     if let Some(anew) = anew.filter(|_| !left_unknown) {
         notes.insert(0, stretches::told(&anew));
     }
@@ -230,7 +217,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
             notes,
         },
         corrected: corrected_model(request.model, &placed),
-        series: series(&check, &data, &predictions[0], &predictions[shown])?,
+        series: series(check, &data, &predictions[0], &predictions[shown])?,
         motions,
     })
 }
@@ -401,6 +388,7 @@ fn search(
     Ok(Answer {
         set,
         estimate,
+        weights,
         judged,
         remainder,
         singles,

@@ -347,7 +347,8 @@ impl<'a> Search<'a> {
     }
 
     /// The best `most` scores, each candidate in its best shape. Of single effects two shapes are
-    /// picked, and every kind gets a fit at its best place: the linear score says little where the gap is large.
+    /// picked, and every kind gets a fit at its best place, of the faults of a channel in every channel that hardly counts: the
+    /// linear score says little where the gap is large.
     fn pick(&self, scores: Vec<Score>, most: usize, every_kind: bool) -> Vec<Score> {
         let shapes = if every_kind { 2 } else { 1 };
         let mut picked: Vec<Score> = Vec::new();
@@ -356,9 +357,12 @@ impl<'a> Search<'a> {
                 .iter()
                 .filter(|p| name(&p.start) == name(&score.start))
                 .count();
-            let kin = picked
-                .iter()
-                .any(|p| p.start.effect.kind() == score.start.effect.kind());
+            // By its weight, a channel that hardly counts would have no fit at all.
+            let of_all_places = !self.hardly_counts(&score.start.at);
+            let kin = picked.iter().any(|p| {
+                let is_kind = p.start.effect.kind() == score.start.effect.kind();
+                is_kind && (of_all_places || p.start.at == score.start.at)
+            });
             let room = picked.len() < most && score.gain > HOPELESS;
             if twins < shapes && (room || (every_kind && !kin)) {
                 picked.push(score);

@@ -5,6 +5,7 @@
 //! sensor is the plainest case. But what leaves white noise of such a channel has explained every sample of it.
 
 use simgap_estimate::{EstimateError, Fit, Start, Weights};
+use simgap_model::Location;
 
 use crate::evidence::independence;
 use crate::hypothesis::Hypothesis;
@@ -16,6 +17,9 @@ const SLOW: f64 = 0.02;
 const WHITE: f64 = 0.1;
 /// What is left of the squared discrepancy of the best set, at the most.
 const LEFT: f64 = 0.25;
+/// The same that is enough whatever its colour: parameters that are held where they are known, for want of weight, leave slow
+/// trifles.
+const HARDLY_LEFT: f64 = 1e-3;
 
 impl Search<'_> {
     /// The set without effects and those that were found, best first; found anew with other weights where the first
@@ -37,15 +41,24 @@ impl Search<'_> {
         Ok((base, pool))
     }
 
+    /// Whether a place is a channel whose discrepancy is so slow that it hardly counts.
+    pub(crate) fn hardly_counts(&self, at: &Location) -> bool {
+        let Location::Channel(channel) = at else {
+            return false;
+        };
+        let output = self.problem.model.output_index(channel);
+        output.is_some_and(|c| self.weights.independence[c] < SLOW)
+    }
+
     /// The set that explains a slow channel where the best one does not: by its colour the channels are weighed aright.
     fn passed_over<'a>(&self, pool: &'a [Hypothesis]) -> Option<&'a Hypothesis> {
         let best = &pool.first()?.fit.variance;
         let worth = |set: &Hypothesis| {
             let white = independence(&set.fit, best.len());
             let channels = (0..best.len()).filter(|&c| {
+                let left = set.fit.variance[c] / best[c];
                 self.weights.independence[c] < SLOW
-                    && white[c] > WHITE
-                    && set.fit.variance[c] < LEFT * best[c]
+                    && (white[c] > WHITE && left < LEFT || left < HARDLY_LEFT)
             });
             let gains = channels.map(|c| white[c] * (best[c] / set.fit.variance[c]).ln());
             gains.sum::<f64>()

@@ -192,6 +192,13 @@ pub(crate) fn leaves_much(gap: &Gap) -> bool {
         && closed(gap.recalibrated, gap.corrected, gap.noise_floor) < CLOSES_BEYOND_RECALIBRATION
 }
 
+/// Whether a set that leaves nothing but noise of the records it was fitted to leaves more of the check records, which may
+/// be for want of knowing its parameters better.
+pub(crate) fn may_be_spread(answer: &Answer, gap: &Gap) -> bool {
+    answer.remainder.over_noise < NOTHING_BUT_NOISE
+        && gap.corrected > NOTHING_BUT_NOISE * gap.noise_floor
+}
+
 /// Whether a set with one force at the most, and no dynamics, leaves nothing but noise of the records it was
 /// fitted to. Where it fails on the check records then, their motion hangs on differences that no estimate
 /// resolves: play, sticking, which samples are lost. Not where the model as given does better (by more than [`NO_WORSE`]).

@@ -9,7 +9,7 @@ use simgap_simulate::{Job, predict_all};
 
 use crate::fit::{Known, Merit, fit_with};
 use crate::layout::{Freedom, Layout};
-use crate::linearise::{Linearised, Signals, linearise};
+use crate::linearise::{Linearised, Signals, discrepancy, linearise};
 use crate::normal::normal_equations;
 use crate::products::{inner, inner_products};
 use crate::reach::Reach;
@@ -177,20 +177,14 @@ impl Base<'_> {
     }
 
     /// Change of the prediction of a run, divided by the share.
-    fn change(&self, run: usize, mut predicted: Signals, share: f64) -> Signals {
-        for (c, signal) in predicted.iter_mut().enumerate() {
-            let before = &self.at.discrepancy[run][c];
-            match &self.problem.runs[run].measured[c] {
-                Some(measured) => {
-                    for (i, p) in signal.iter_mut().enumerate() {
-                        *p = (*p - (measured[i] - before[i])) / share;
-                    }
-                }
-                None => signal.fill(0.0),
-            }
+    fn change(&self, run: usize, predicted: Signals, share: f64) -> Signals {
+        let mut change = discrepancy(self.problem, run, predicted);
+        for (signal, before) in change.iter_mut().zip(&self.at.discrepancy[run]) {
+            let each = signal.iter_mut().zip(before);
+            each.for_each(|(after, before)| *after = (before - *after) / share);
         }
-        self.reach.keep(run, &mut predicted);
-        predicted
+        self.reach.keep(run, &mut change);
+        change
     }
 
     /// What trials have in common with the base and with each other: all at once, as the sensitivities of the base are

@@ -393,7 +393,7 @@ impl<'a> Merit<'a> {
 /// Typical size of each entry of an initial state: what the outputs allow to guess, one elsewhere.
 pub(crate) fn state_scale(problem: &Problem) -> Vec<f64> {
     let n = problem.model.dof_count();
-    let std = problem.output_std();
+    let std = problem.motion_std();
     let mut displacement = 0.0_f64;
     for (output, std) in problem.model.outputs.iter().zip(&std) {
         if output.kind == simgap_model::OutputKind::Displacement {

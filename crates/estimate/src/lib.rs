@@ -78,6 +78,8 @@ mod products;
 mod reach;
 mod score;
 mod site;
+mod spread;
+mod whitening;
 
 pub use base::{Base, linearise_at};
 pub use fit::{Fit, Interval, fit};
@@ -86,5 +88,7 @@ pub use layout::{Candidate, Start};
 pub use outright::score_outright;
 pub use problem::{Problem, Weights};
 pub use score::{Score, score, score_shapes};
+pub use spread::deviations;
+pub use whitening::Whitening;
 
 pub use simgap_simulate::SimulateError as EstimateError;

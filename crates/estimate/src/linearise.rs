@@ -103,8 +103,7 @@ fn batch(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateErr
         .into_iter()
         .zip(points)
         .map(|(predicted, point)| {
-            let measured = &problem.runs[point.run].measured;
-            Ok(subtract(measured, predicted?))
+            Ok(discrepancy(problem, point.run, predicted?))
         });
     subtracted.collect()
 }
@@ -145,7 +144,9 @@ pub(crate) fn reach(problem: &Problem, layout: &Layout, theta: &[f64]) -> Reach 
     Reach::of(problem, &layout.unpack(theta).effects)
 }
 
-fn subtract(measured: &[Option<Vec<f64>>], mut predicted: Signals) -> Signals {
+/// Measured minus predicted in a run, filtered.
+pub(crate) fn discrepancy(problem: &Problem, run: usize, mut predicted: Signals) -> Signals {
+    let measured = &problem.runs[run].measured;
     for (signal, measured) in predicted.iter_mut().zip(measured) {
         match measured {
             Some(measured) => signal
@@ -155,6 +156,7 @@ fn subtract(measured: &[Option<Vec<f64>>], mut predicted: Signals) -> Signals {
             None => signal.fill(0.0),
         }
     }
+    problem.whiten(&mut predicted);
     predicted
 }
 

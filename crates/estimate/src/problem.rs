@@ -6,7 +6,7 @@ use simgap_effects::{Family, Placed, catalogue, sites};
 use simgap_model::{Model, OutputKind};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
-use crate::{Candidate, EstimateError};
+use crate::{Candidate, EstimateError, Whitening};
 
 /// A nominal model and the runs it is compared with.
 pub struct Problem {
@@ -18,6 +18,8 @@ pub struct Problem {
     pub given: Vec<Placed>,
     /// Steps between samples where nonlinear forces act.
     pub substeps: usize,
+    /// What discrepancies and sensitivities are filtered with; nothing at first.
+    pub whitening: Whitening,
 }
 
 /// How strongly each channel and each nominal parameter counts.
@@ -77,10 +79,11 @@ impl Problem {
             runs,
             given,
             substeps,
+            whitening: Whitening::default(),
         })
     }
 
-    /// The same model with other runs and the same steps.
+    /// The same model with other runs, the same steps and filters.
     #[must_use]
     pub fn with_runs(&self, runs: Vec<Run>) -> Problem {
         Problem {
@@ -88,6 +91,14 @@ impl Problem {
             runs,
             given: self.given.clone(),
             substeps: self.substeps,
+            whitening: self.whitening.clone(),
+        }
+    }
+
+    /// Filters the signals of a run, channel by channel.
+    pub(crate) fn whiten(&self, signals: &mut [Vec<f64>]) {
+        for (channel, signal) in signals.iter_mut().enumerate() {
+            self.whitening.apply(channel, signal);
         }
     }
 
@@ -142,20 +153,38 @@ impl Problem {
         candidates
     }
 
-    /// Standard deviation of each output over all runs, model units.
+    /// Standard deviation of each output over all runs, model units: what discrepancies are compared with, and filtered like
+    /// them.
     #[must_use]
     pub fn output_std(&self) -> Vec<f64> {
-        (0..self.model.outputs.len())
-            .map(|channel| {
-                let values = || {
-                    self.runs
-                        .iter()
-                        .filter_map(|r| r.measured[channel].as_ref())
-                        .flatten()
-                };
-                rms_about_mean(values)
-            })
-            .collect()
+        let of_channel = |channel: usize| {
+            let order = self.whitening.order(channel);
+            if order == 0 {
+                return self.motion_std_of(channel);
+            }
+            let measured = self.runs.iter().filter_map(|r| r.measured[channel].as_ref());
+            let filtered: Vec<Vec<f64>> = measured
+                .map(|values| {
+                    let mut values = values.clone();
+                    self.whitening.apply(channel, &mut values);
+                    values.split_off(order.min(values.len()))
+                })
+                .collect();
+            rms_about_mean(|| filtered.iter().flatten())
+        };
+        (0..self.model.outputs.len()).map(of_channel).collect()
+    }
+
+    /// Standard deviation of each output over all runs, model units, as it was measured.
+    #[must_use]
+    pub fn motion_std(&self) -> Vec<f64> {
+        let channels = 0..self.model.outputs.len();
+        channels.map(|channel| self.motion_std_of(channel)).collect()
+    }
+
+    fn motion_std_of(&self, channel: usize) -> f64 {
+        let measured = || self.runs.iter().filter_map(|r| r.measured[channel].as_ref());
+        rms_about_mean(|| measured().flatten())
     }
 
     /// First guess of the initial state of each run, from the measured displacements and

@@ -41,9 +41,12 @@ impl Reach {
 fn of_run(problem: &Problem, effects: &[Placed], number: usize) -> Vec<Range<usize>> {
     let run = &problem.runs[number];
     let outputs = problem.model.outputs.iter().zip(&run.measured);
-    let of_channel = |(output, measured): (&simgap_model::Output, &Option<Vec<f64>>)| {
+    type Channel<'a> = (usize, (&'a simgap_model::Output, &'a Option<Vec<f64>>));
+    let of_channel = |(channel, (output, measured)): Channel<'_>| {
+        // What a filter has seen all samples before of.
+        let whole = problem.whitening.order(channel).min(run.len)..run.len;
         let Some(measured) = measured else {
-            return 0..run.len;
+            return whole;
         };
         let here = Location::Channel(output.channel.clone());
         let signal = Sampled {
@@ -61,13 +64,13 @@ fn of_run(problem: &Problem, effects: &[Placed], number: usize) -> Vec<Range<usi
                 _ => 0..run.len,
             })
             // Shifts one after the other add up.
-            .fold(0..run.len, |all, one| {
+            .fold(whole, |all, one| {
                 let late = all.start + one.start;
                 let early = all.end.saturating_sub(run.len - one.end.min(run.len));
                 late..early.max(late)
             })
     };
-    outputs.map(of_channel).collect()
+    outputs.enumerate().map(of_channel).collect()
 }
 
 #[cfg(test)]

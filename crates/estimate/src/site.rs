@@ -35,7 +35,7 @@ impl Problem {
         let channel = self.channel_at(at);
         let inertia = self.force_scale(at, rms_about_mean(|| path.acceleration.iter()));
         let signal = match (at, channel) {
-            (_, Some(i)) => self.output_std()[i],
+            (_, Some(i)) => self.motion_std()[i],
             (Location::Input(name), None) => {
                 let index = self.model.inputs.iter().position(|i| &i.channel == name);
                 index.map_or(0.0, |i| {
@@ -117,7 +117,7 @@ impl Problem {
             .model
             .outputs
             .iter()
-            .zip(self.output_std())
+            .zip(self.motion_std())
             .filter(|(output, _)| output.kind == OutputKind::Force)
             .map(|(_, std)| std);
         forces.fold(0.0, f64::max)

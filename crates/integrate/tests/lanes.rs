@@ -126,7 +126,7 @@ impl ForceLaw for Beyond {
         self.damping * at.velocity * at.set_in(at.displacement - self.point)
     }
 
-    fn jumps(&self) -> bool {
+    fn is_spread_over_steps(&self) -> bool {
         self.damping > 0.0
     }
 }

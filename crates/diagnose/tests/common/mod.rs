@@ -145,7 +145,8 @@ pub(crate) fn record(
         let unit = match output.kind {
             OutputKind::Acceleration => "m/s^2",
             OutputKind::Force => "N",
-            _ => "m",
+            OutputKind::Velocity => "m/s",
+            OutputKind::Displacement => "m",
         };
         let values = noisy(signal, NOISE);
         channels.push(Channel::new(&output.channel, unit, values));

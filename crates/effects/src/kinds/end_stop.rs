@@ -49,7 +49,7 @@ impl ForceLaw for Law {
         self.stiffness * (upper + lower)
     }
 
-    fn jumps(&self) -> bool {
+    fn is_spread_over_steps(&self) -> bool {
         self.damping_time_s > 0.0
     }
 }

@@ -1,6 +1,6 @@
 //! A force at one frequency that the inputs do not hold.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
@@ -24,12 +24,32 @@ struct Law {
     phase: f64,
 }
 
+impl Law {
+    /// What the amplitude has to be multiplied by for the straight lines between points `step_s` apart to push as much
+    /// at the frequency of the force as the force itself: those through a tone hold sin²x / x² of it, x = ω h / 2. Points
+    /// fewer than two a period do not show the tone.
+    fn in_straight_lines(&self, step_s: f64) -> f64 {
+        let half = (0.5 * self.omega * step_s).min(FRAC_PI_2);
+        if half > 0.0 {
+            let ratio = half / elementary::sin(half);
+            ratio * ratio
+        } else {
+            1.0
+        }
+    }
+}
+
 impl ForceLaw for Law {
     lanes!(amplitude, omega, phase);
 
     /// Negative, for a member force pushes its first node back.
     fn force(&self, motion: MemberMotion) -> f64 {
-        -self.amplitude * elementary::sin(self.omega * motion.time_s + self.phase)
+        let amplitude = self.amplitude * self.in_straight_lines(motion.step_s);
+        -amplitude * elementary::sin(self.omega * motion.time_s + self.phase)
+    }
+
+    fn is_spread_over_steps(&self) -> bool {
+        true
     }
 }
 

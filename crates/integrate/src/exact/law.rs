@@ -69,13 +69,14 @@ pub trait ForceLaw: Any + Send + Sync {
     /// The single-valued part, N.
     fn force(&self, motion: MemberMotion) -> f64;
 
-    /// Whether the force jumps from one point to the next, and [`ForceLaw::force`] spreads the jump over a step.
-    fn jumps(&self) -> bool {
+    /// Whether [`ForceLaw::force`] is made to act over a step as the force does between its ends, and so is another than the
+    /// force at a point: a jump that it spreads, a tone that straight lines between points would cut short.
+    fn is_spread_over_steps(&self) -> bool {
         false
     }
 
-    /// For a law that [`ForceLaw::jumps`]: the force at a point less what it is spread over a step, N. A member is moved by the
-    /// one and an output is sampled of the other.
+    /// For a law that [`ForceLaw::is_spread_over_steps`]: the force at a point less what acts over a step, N. A member is
+    /// moved by the one and an output is sampled of the other.
     fn beyond_step(&self, motion: MemberMotion) -> f64 {
         let at_a_point = MemberMotion {
             step_s: 0.0,

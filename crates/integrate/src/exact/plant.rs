@@ -167,7 +167,7 @@ impl<'a> Plant<'a> {
     pub(super) fn carried(&self, i: usize, state: &[f64], base: &[f64], time_s: f64) -> f64 {
         let element = &self.elements[i];
         let carried = self.smooth[i] + self.dry_end[i];
-        if element.law.jumps() {
+        if element.law.is_spread_over_steps() {
             let motion = self.motion(element, state, base, time_s);
             carried + element.law.beyond_step(motion)
         } else {

@@ -186,7 +186,7 @@ impl<'a> Lanes<'a> {
         state
     }
 
-    /// Adds to what an element whose force jumps carries what it is at a point beyond what it is over a step.
+    /// Adds to what an element whose force is spread over steps carries what it is at a point beyond that.
     fn add_beyond_step<S: Simd, R: Row>(
         &self,
         simd: S,
@@ -195,8 +195,8 @@ impl<'a> Lanes<'a> {
         carried: &mut Pack,
     ) {
         let [displacement, velocity] = motion_across(simd, self.block.nodes[i], state, base);
-        let jumping = self.sets.iter().enumerate();
-        for (l, set) in jumping.filter(|(_, set)| set.elements[i].law.jumps()) {
+        let spread = self.sets.iter().enumerate();
+        for (l, set) in spread.filter(|(_, set)| set.elements[i].law.is_spread_over_steps()) {
             let step_s = set.propagator.time_step_s;
             let steps = sample * set.excitation.substeps.max(1);
             carried.0[l] += set.elements[i].law.beyond_step(MemberMotion {
@@ -325,7 +325,7 @@ impl<R: Row> Seen<R> {
         self.state.copy_from(state);
         lanes.block.carried(simd, &mut self.carried);
         for (i, carried) in self.carried.iter_mut().enumerate() {
-            if lanes.block.jumps[i] {
+            if lanes.block.spread[i] {
                 lanes.add_beyond_step(simd, [i, sample], (state, base), carried);
             }
         }

@@ -24,8 +24,8 @@ pub(super) struct Block<'a> {
     sweeps: usize,
     any_dry: bool,
     any_memory: bool,
-    /// Whether the force of an element jumps in some set.
-    pub(super) jumps: Vec<bool>,
+    /// Whether the force of an element is spread over steps in some set.
+    pub(super) spread: Vec<bool>,
     free: Vec<[Pack; 2]>,
     step_s: Pack,
     start_s: Pack,
@@ -135,8 +135,8 @@ impl<'a> Block<'a> {
                 SWEEPS
             },
             any_dry: plants[0].dry.contains(&true),
-            jumps: (0..m)
-                .map(|i| sets.iter().any(|set| set.elements[i].law.jumps()))
+            spread: (0..m)
+                .map(|i| sets.iter().any(|set| set.elements[i].law.is_spread_over_steps()))
                 .collect(),
             any_memory: plants[0].remembers.contains(&true),
             free: vec![[Pack::ZERO; 2]; m],
