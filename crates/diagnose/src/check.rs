@@ -77,7 +77,13 @@ impl<'a> Check<'a> {
     ) -> Result<Gap, EstimateError> {
         let driven = input_noise(problem, placed, &self.plain, &self.train.runs)?;
         let corrected = (placed, &predictions[last]);
-        Ok(gap(problem, &predictions[0], &predictions[1], corrected, &driven))
+        Ok(gap(
+            problem,
+            &predictions[0],
+            &predictions[1],
+            corrected,
+            &driven,
+        ))
     }
 
     /// What an answer, `placed` on the model, leaves.

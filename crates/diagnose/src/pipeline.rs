@@ -146,10 +146,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         false => None,
     };
     answer.follows_anew = anew.is_some();
-    if is_refuted(&checked.judged)
-        && answer.names_more_than_parameters()
-        && !answer.follows_anew
-    {
+    if is_refuted(&checked.judged) && answer.names_more_than_parameters() && !answer.follows_anew {
         // On records it was not fitted to, the set is worse than parameters alone.
         let singles = std::mem::take(&mut answer.singles);
         answer = search(request, &train, fits, Scope::Parameters, progress)?;

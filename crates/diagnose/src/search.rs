@@ -346,9 +346,8 @@ impl<'a> Search<'a> {
         Ok(scores)
     }
 
-    /// The best `most` scores, each candidate in its best shape. Of single effects two shapes are
-    /// picked, and every kind gets a fit at its best place, of the faults of a channel in every channel that hardly counts: the
-    /// linear score says little where the gap is large.
+    /// The best `most` scores, each candidate in its best shape. Of single effects two shapes are picked, and every kind gets
+    /// a fit at its best place (and in every channel that hardly counts): the linear score says little where the gap is large.
     fn pick(&self, scores: Vec<Score>, most: usize, every_kind: bool) -> Vec<Score> {
         let shapes = if every_kind { 2 } else { 1 };
         let mut picked: Vec<Score> = Vec::new();
@@ -358,10 +357,10 @@ impl<'a> Search<'a> {
                 .filter(|p| name(&p.start) == name(&score.start))
                 .count();
             // By its weight, a channel that hardly counts would have no fit at all.
-            let of_all_places = !self.hardly_counts(&score.start.at);
-            let kin = picked.iter().any(|p| {
-                let is_kind = p.start.effect.kind() == score.start.effect.kind();
-                is_kind && (of_all_places || p.start.at == score.start.at)
+            let is_own_place = self.hardly_counts(&score.start.at);
+            let kin = picked.iter().any(|Score { start: p, .. }| {
+                let is_kind = p.effect.kind() == score.start.effect.kind();
+                is_kind && (!is_own_place || p.at == score.start.at)
             });
             let room = picked.len() < most && score.gain > HOPELESS;
             if twins < shapes && (room || (every_kind && !kin)) {

@@ -35,7 +35,11 @@ pub(crate) fn spread_of_check(
     let std = check.output_std().into_iter().enumerate();
     let shares: Vec<f64> = std
         .map(|(c, std)| {
-            let square: f64 = squares.iter().flatten().map(|of_channel| of_channel[c]).sum();
+            let square: f64 = squares
+                .iter()
+                .flatten()
+                .map(|of_channel| of_channel[c])
+                .sum();
             let share = square.sqrt() / std;
             if share < MOST { share } else { MOST }
         })

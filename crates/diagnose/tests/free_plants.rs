@@ -46,7 +46,12 @@ fn verify_nothing_is_blamed_for_the_way_that_noise_leads_a_slide() {
     let gap = &outcome.diagnosis.gap;
     assert!(gap.input_noise > 4.0 * gap.noise_floor, "{gap:?}");
     let notes = &outcome.diagnosis.notes;
-    assert!(notes.iter().any(|note| note.contains("leads this plant away")), "{notes:?}");
+    assert!(
+        notes
+            .iter()
+            .any(|note| note.contains("leads this plant away")),
+        "{notes:?}"
+    );
 }
 
 /// What every sample adds to those before it shows a delay, to a part of a sample.
@@ -110,7 +115,11 @@ between = ["gear", "base"]
     let at = Location::Channel("v1".into());
     let truth = [
         placed("sensor_drift", at.clone(), &[-0.9]),
-        placed("stiffness_error", Location::Between(["gear".into(), "base".into()]), &[0.985]),
+        placed(
+            "stiffness_error",
+            Location::Between(["gear".into(), "base".into()]),
+            &[0.985],
+        ),
         placed("damping_error", ground(), &[1.03]),
     ];
     let outcome = diagnosed_as(&model, &truth, &[], 2e-3);

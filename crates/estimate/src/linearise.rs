@@ -102,9 +102,7 @@ fn batch(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateErr
     let subtracted = predictions
         .into_iter()
         .zip(points)
-        .map(|(predicted, point)| {
-            Ok(discrepancy(problem, point.run, predicted?))
-        });
+        .map(|(predicted, point)| Ok(discrepancy(problem, point.run, predicted?)));
     subtracted.collect()
 }
 

@@ -162,7 +162,10 @@ impl Problem {
             if order == 0 {
                 return self.motion_std_of(channel);
             }
-            let measured = self.runs.iter().filter_map(|r| r.measured[channel].as_ref());
+            let measured = self
+                .runs
+                .iter()
+                .filter_map(|r| r.measured[channel].as_ref());
             let filtered: Vec<Vec<f64>> = measured
                 .map(|values| {
                     let mut values = values.clone();
@@ -179,11 +182,17 @@ impl Problem {
     #[must_use]
     pub fn motion_std(&self) -> Vec<f64> {
         let channels = 0..self.model.outputs.len();
-        channels.map(|channel| self.motion_std_of(channel)).collect()
+        channels
+            .map(|channel| self.motion_std_of(channel))
+            .collect()
     }
 
     fn motion_std_of(&self, channel: usize) -> f64 {
-        let measured = || self.runs.iter().filter_map(|r| r.measured[channel].as_ref());
+        let measured = || {
+            self.runs
+                .iter()
+                .filter_map(|r| r.measured[channel].as_ref())
+        };
         rms_about_mean(|| measured().flatten())
     }
 

@@ -50,13 +50,8 @@ impl Problem {
         let stiffness = stiffness_at(&self.model, at);
         let first = self.runs.first();
         let step = first.map_or(1.0, |run| run.time_step_s);
-        let measured = |i: usize| {
-            self.runs
-                .iter()
-                .filter_map(move |r| r.measured[i].as_deref())
-        };
         let (signal_step, signal_level) = channel
-            .and_then(|i| lattice(measured(i).flatten().copied().collect()))
+            .and_then(|i| self.lattice_of(i))
             .unwrap_or((0.0, 0.0));
         let moved = path.displacement.get(..first.map_or(0, |run| run.len));
         Ok(SiteScale {
@@ -64,7 +59,7 @@ impl Problem {
             time_step_s: step,
             duration_s: positive(longest),
             displacement_range_m: range(path.displacement.iter().copied()),
-            signal_range: channel.map_or([-1.0, 1.0], |i| range(measured(i).flatten().copied())),
+            signal_range: channel.map_or([-1.0, 1.0], |i| range(self.measured(i))),
             signal_step,
             signal_level,
             stiffness_n_per_m: if stiffness > 0.0 {
@@ -82,6 +77,21 @@ impl Problem {
                 force_n,
             )
         })
+    }
+
+    /// The step in which the values of a channel are stored and its level nearest to zero, in its unit; `None` where they lie
+    /// on no coarse lattice.
+    #[must_use]
+    pub fn lattice_of(&self, channel: usize) -> Option<(f64, f64)> {
+        lattice(self.measured(channel).collect())
+    }
+
+    /// The values of a channel in all runs.
+    fn measured(&self, channel: usize) -> impl Iterator<Item = f64> {
+        let runs = self.runs.iter();
+        runs.filter_map(move |run| run.measured[channel].as_deref())
+            .flatten()
+            .copied()
     }
 
     /// Strongest lines of what a fit leaves of the longest run, Hz: of the channel at the place, of

@@ -73,7 +73,11 @@ fn levinson_durbin(covariance: &[f64]) -> Vec<f64> {
     let mut a: Vec<f64> = vec![];
     let mut left = covariance[0];
     for k in 1..covariance.len() {
-        let known: f64 = a.iter().enumerate().map(|(i, a)| a * covariance[k - 1 - i]).sum();
+        let known: f64 = a
+            .iter()
+            .enumerate()
+            .map(|(i, a)| a * covariance[k - 1 - i])
+            .sum();
         let reflection = -(covariance[k] + known) / left;
         if !(reflection.abs() < 1.0) {
             break;
@@ -134,7 +138,11 @@ mod tests {
         let walked = walk(model);
         // Uniform noise of width w has the variance w²/12.
         let whitening = Whitening::of_noise(&[vec![&walked]], &[4.0 / 12.0], 24);
-        let mut left: Vec<f64> = walk(steps).iter().zip(sensor).map(|(x, e)| x + 2.0 * e).collect();
+        let mut left: Vec<f64> = walk(steps)
+            .iter()
+            .zip(sensor)
+            .map(|(x, e)| x + 2.0 * e)
+            .collect();
         let first = left.clone();
         whitening.apply(0, &mut left);
         let correlation = |signal: &[f64]| {

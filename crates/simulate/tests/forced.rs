@@ -30,11 +30,7 @@ fn errors(samples_a_period: f64, substeps: usize) -> [f64; 3] {
     let size = FORCE / (STIFFNESS - MASS * omega * omega);
     let exact = |t: f64| {
         let (sin, cos) = (omega * t + PHASE).sin_cos();
-        [
-            size * sin,
-            omega * size * cos,
-            -omega * omega * size * sin,
-        ]
+        [size * sin, omega * size * cos, -omega * omega * size * sin]
     };
     let [x, v, _] = exact(0.0);
     let still = run(step, 200, vec![]);

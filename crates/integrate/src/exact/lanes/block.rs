@@ -136,7 +136,10 @@ impl<'a> Block<'a> {
             },
             any_dry: plants[0].dry.contains(&true),
             spread: (0..m)
-                .map(|i| sets.iter().any(|set| set.elements[i].law.is_spread_over_steps()))
+                .map(|i| {
+                    sets.iter()
+                        .any(|set| set.elements[i].law.is_spread_over_steps())
+                })
                 .collect(),
             any_memory: plants[0].remembers.contains(&true),
             free: vec![[Pack::ZERO; 2]; m],
