@@ -242,7 +242,14 @@ pub fn score(name: &str, truth: &Truth, answer: &Answer, best: Option<&Signals>)
         Status::None => vec![of_clean(truth, answer.status, named)],
         Status::Unknown => {
             let closed = closing.map_or(f64::NAN, |closing| closing.actual);
-            vec![of_foreign(truth, answer.status, &unexcused, closed)]
+            // Where parameters that are off a little are all that is named, they are what stands in.
+            let all: Vec<&Named> = named.iter().collect();
+            let blamed = if unexcused.is_empty() {
+                &all
+            } else {
+                &unexcused
+            };
+            vec![of_foreign(truth, answer.status, blamed, closed)]
         }
         Status::Parameters | Status::Effect => (0..truth.effects.len())
             .map(|i| of_effect(truth, i, answer.status, named, &hits))

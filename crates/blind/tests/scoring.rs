@@ -245,6 +245,27 @@ fn verify_a_withheld_kind_may_go_by_another_name_of_the_same_law() {
     );
 }
 
+/// An input gain that is not looked for, imitated by parameters that are off a little besides: they stand in, and say so.
+#[test]
+fn verify_parameters_that_are_off_besides_may_stand_in() {
+    let member = || between("m1", "ground");
+    let gain = entry("input_gain", Location::Input("u".into()));
+    let mut truth = case(Status::Effect, vec![gain]).with_kind_withheld();
+    truth.deviations.push(entry("stiffness_error", member()));
+    let stiffness = named("stiffness_error", member(), 0.8);
+    let mut told = answer(
+        Status::Parameters,
+        vec![Named {
+            stand_in: true,
+            ..stiffness
+        }],
+    );
+    told.corrected = off_by(0.01 * NOMINAL_GAP);
+    assert_eq!(score(&truth, &told).outcome(), Outcome::StandIn);
+    told.named[0].stand_in = false;
+    assert_eq!(score(&truth, &told).outcome(), Outcome::Wrong);
+}
+
 #[test]
 fn verify_the_true_closing_is_against_the_truth_without_noise() {
     let said = vec![named("coulomb_friction", between("m1", "ground"), 0.9)];

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{diagnosed_as, diagnosed_with_noise, ground, named, placed};
+use common::{diagnosed, diagnosed_as, diagnosed_with_noise, ground, named, placed};
 use simgap_diagnose::Status;
 use simgap_model::{Location, Model};
 
@@ -50,6 +50,18 @@ fn verify_nothing_is_blamed_for_the_way_that_noise_leads_a_slide() {
         notes
             .iter()
             .any(|note| note.contains("leads this plant away")),
+        "{notes:?}"
+    );
+}
+
+/// A plant that springs hold is judged by its residuals as they are.
+#[test]
+fn verify_a_plant_on_springs_is_not_led_away() {
+    let notes = diagnosed(&[], &[]).diagnosis.notes;
+    assert!(
+        notes
+            .iter()
+            .all(|note| !note.contains("leads this plant away")),
         "{notes:?}"
     );
 }

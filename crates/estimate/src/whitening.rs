@@ -79,7 +79,8 @@ fn levinson_durbin(covariance: &[f64]) -> Vec<f64> {
             .map(|(i, a)| a * covariance[k - 1 - i])
             .sum();
         let reflection = -(covariance[k] + known) / left;
-        if !(reflection.abs() < 1.0) {
+        // Not a number where nothing is left.
+        if reflection.is_nan() || reflection.abs() >= 1.0 {
             break;
         }
         let mirrored: Vec<f64> = a.iter().rev().map(|a| reflection * a).collect();
