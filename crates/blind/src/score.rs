@@ -221,7 +221,7 @@ impl Score {
 ///
 /// An effect of the truth is `Right` when it is named at its place, `Equivalent` when one of its
 /// [`simgap_effects::equivalents`] is. Named nominal parameters beside the effect are excused where the case
-/// has small errors of them ([`Truth::deviations`]).
+/// has small errors of them ([`Truth::deviations`]), but for one from outside the catalogue where they are all that is named.
 ///
 /// ```
 /// use simgap_blind::{Answer, Level, Outcome, Recipe, generate, score};

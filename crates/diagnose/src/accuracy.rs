@@ -29,11 +29,14 @@ pub(crate) fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, Estimat
     let estimate = &fit.estimate;
     let delta = between_samples(problem, &estimate.nominal, &estimate.initial)?;
     let [least, most] = BOUNDS;
-    // Of filtered discrepancies it is the same share.
     let std = problem.output_std().into_iter();
     let filtered = std.clone().zip(problem.motion_std());
     let delta = delta.into_iter().zip(filtered);
-    let delta = delta.map(|(delta, (filtered, std))| delta * filtered / std);
+    // Of filtered discrepancies it is taken to be the same share.
+    let delta = delta.map(|(delta, (filtered, std))| match problem.is_whitened() {
+        true => delta * filtered / std,
+        false => delta,
+    });
     // A channel that does not move has no bounds to keep; NaN is off by as much as may be.
     let bounded = |(delta, std): (f64, f64)| match delta < most * std {
         true => delta.max(least * std),

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Placed, find, same_place};
-use simgap_estimate::{EstimateError, Interval, Problem, Weights};
+use simgap_estimate::{EstimateError, Interval, Problem, Weights, fit_initial_states};
 use simgap_model::Location;
 
 use crate::diagnosis::{
@@ -109,6 +109,14 @@ fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
         return vec![];
     };
     let initial = &answer.estimate.estimate.initial[0];
+    // What is left is told as it is, not as an answer is judged by it.
+    let as_it_is = train.is_whitened().then(|| {
+        let alone = train.unfiltered().with_runs(vec![run.clone()]);
+        let plain = Weights::independent(train.model.outputs.len());
+        fit_initial_states(&alone, &[], &plain).ok()
+    });
+    let nominal = as_it_is.flatten();
+    let left = &nominal.as_ref().unwrap_or(&answer.nominal).discrepancy[0];
     let mut sentences = Vec::new();
     for (c, output) in train.model.outputs.iter().enumerate() {
         let place = match (&output.at, &output.between) {
@@ -121,9 +129,8 @@ fn describe_rest(train: &Problem, answer: &Answer) -> Vec<String> {
                 Location::Mass(mass) => format!("of {mass}"),
                 place => place.to_string(),
             };
-            let left = &answer.nominal.discrepancy[0][c];
             let rate = 1.0 / run.time_step_s;
-            sentences.extend(describe(&output.channel, left, &path, &across, rate));
+            sentences.extend(describe(&output.channel, &left[c], &path, &across, rate));
         }
     }
     sentences

@@ -6,11 +6,13 @@ use simgap_estimate::{EstimateError, Fit, Problem, Weights};
 use simgap_simulate::{Run, substeps_for};
 
 use crate::accuracy::accuracy_of_check;
+use crate::data::excerpts;
 use crate::gap::{Prediction, gap, predict};
+use crate::hypothesis::Hypothesis;
 use crate::input_noise::input_noise;
 use crate::pipeline::Answer;
 use crate::spread::spread_of_check;
-use crate::{Gap, jumps, stretches, unexplained};
+use crate::{Gap, answer, jumps, stretches, unexplained};
 
 /// The check records.
 pub(crate) struct Check<'a> {
@@ -47,12 +49,10 @@ impl<'a> Check<'a> {
         whitened.substeps = whitened
             .substeps
             .max(substeps_for(&whitened.model, &whitened.runs)?);
-        let mut problem = whitened.with_runs(whitened.runs.clone());
-        problem.whitening = simgap_estimate::Whitening::default();
         Ok(Check {
-            plain: Weights::independent(problem.model.outputs.len()),
-            whitened: (whitened.whitening != problem.whitening).then_some(whitened),
-            problem,
+            plain: Weights::independent(whitened.model.outputs.len()),
+            problem: whitened.unfiltered(),
+            whitened: whitened.is_whitened().then_some(whitened),
             train,
             recalibrated,
         })
@@ -142,10 +142,27 @@ impl<'a> Check<'a> {
 
     /// The gap where `placed` starts anew in every stretch, if it leaves nothing but noise then.
     pub(crate) fn followed_anew(&self, placed: &[Placed]) -> Option<Gap> {
-        let problem = self.whitened.as_ref().unwrap_or(&self.problem);
         let known = &self.recalibrated.estimate.nominal;
-        let anew = stretches::gap_followed_anew(problem, known, placed, &self.plain);
+        // A filter would see no beginning of a stretch; within one, noise of the inputs leads a plant less far.
+        let anew = stretches::gap_followed_anew(&self.problem, known, placed, &self.plain);
         anew.ok().flatten()
+    }
+
+    /// What single effects leave of excerpts: as told, and as an answer is judged by it.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated.
+    pub(crate) fn held_back(&self, singles: &[Hypothesis]) -> Result<[Vec<f64>; 2], EstimateError> {
+        let of = |problem: &Problem| {
+            let short = problem.with_runs(excerpts(&problem.runs));
+            answer::held_back(&short, singles, &self.plain)
+        };
+        let told = of(&self.problem)?;
+        let judged = self
+            .whitened
+            .as_ref()
+            .map_or_else(|| Ok(told.clone()), of)?;
+        Ok([told, judged])
     }
 
     /// Said of records that a plant wanders in.

@@ -44,6 +44,10 @@ type Phasor = (Place, c64);
 
 /// Why the lines that an answer names have another cause; `None` where they have none in common.
 pub(crate) fn one_cause(problem: &Problem, answer: &Answer) -> Option<String> {
+    if problem.is_whitened() {
+        // What is left is filtered, and lines are not.
+        return None;
+    }
     let estimate = &answer.estimate.estimate;
     let of_run = |record: usize| -> Lines {
         let placed = estimate.effects.iter().map(|e| e.in_record(record));

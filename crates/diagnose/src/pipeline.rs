@@ -125,7 +125,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
 
     progress("nominal model");
     let mut nominal = fit_initial_states(&train, &[], &plain)?;
-    if let Some(whitening) = wander::whitening(&train, &nominal, &plain, &data.check)? {
+    if let Some(whitening) = wander::whitening(&train, &data.check, &nominal, &plain)? {
         train.whitening = whitening;
         nominal = fit_initial_states(&train, &[], &plain)?;
     }
@@ -160,10 +160,8 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         gap,
         judged,
     } = checked;
-    answer.held_back = {
-        let short = check.problem.with_runs(excerpts(&check.problem.runs));
-        answer::held_back(&short, &answer.singles, &plain)?
-    };
+    let [told, by_judgement] = check.held_back(&answer.singles)?;
+    answer.held_back = by_judgement;
     let mut verdict = answer::verdict(&train, &answer, &judged);
     let left_unknown = verdict.status == crate::Status::Unknown;
     let (gap, placed, shown) = if left_unknown {
@@ -175,6 +173,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     } else {
         (gap, placed, 2)
     };
+    answer.held_back = told;
     let candidates = answer::candidates(&answer, &verdict);
     let floors: Vec<f64> = gap.channels.iter().map(|c| c.noise_floor).collect();
     let check = &check.problem;

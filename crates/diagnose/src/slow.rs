@@ -2,7 +2,8 @@
 //!
 //! A discrepancy that is slow from end to end of a record is one observation, however many samples it has: the channel
 //! hardly counts, whoever explains it gains little, and the search goes after trifles in other channels. A drift of a
-//! sensor is the plainest case. But what leaves white noise of such a channel has explained every sample of it.
+//! sensor is the plainest case. But what leaves white noise of such a channel, or next to nothing, has explained
+//! every sample of it.
 
 use simgap_estimate::{EstimateError, Fit, Start, Weights};
 use simgap_model::Location;
@@ -58,7 +59,7 @@ impl Search<'_> {
             let channels = (0..best.len()).filter(|&c| {
                 let left = set.fit.variance[c] / best[c];
                 self.weights.independence[c] < SLOW
-                    && (white[c] > WHITE && left < LEFT || left < HARDLY_LEFT)
+                    && ((white[c] > WHITE && left < LEFT) || left < HARDLY_LEFT)
             });
             let gains = channels.map(|c| white[c] * (best[c] / set.fit.variance[c]).ln());
             gains.sum::<f64>()

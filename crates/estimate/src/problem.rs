@@ -95,6 +95,21 @@ impl Problem {
         }
     }
 
+    /// The same problem with discrepancies as they are, unfiltered.
+    #[must_use]
+    pub fn unfiltered(&self) -> Problem {
+        Problem {
+            whitening: Whitening::default(),
+            ..self.with_runs(self.runs.clone())
+        }
+    }
+
+    /// Whether discrepancies are filtered.
+    #[must_use]
+    pub fn is_whitened(&self) -> bool {
+        self.whitening != Whitening::default()
+    }
+
     /// Filters the signals of a run, channel by channel.
     pub(crate) fn whiten(&self, signals: &mut [Vec<f64>]) {
         for (channel, signal) in signals.iter_mut().enumerate() {

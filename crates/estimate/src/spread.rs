@@ -18,7 +18,7 @@ use crate::linearise::linearise;
 use crate::normal::{factorise, normal_equations};
 use crate::{EstimateError, Fit, Problem, Weights};
 
-/// What is seen this little, a deviation in units of its own scale, is not seen at all.
+/// Variance of a value, in units of its own scale, from which the data do not see it at all.
 const UNSEEN: f64 = 1.0;
 
 /// Effects and nominal parameters one standard deviation away from a fit, along each of as many independent

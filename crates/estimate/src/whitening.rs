@@ -35,7 +35,7 @@ impl Whitening {
         Whitening(channels.map(filter).collect())
     }
 
-    /// Samples at the beginning of a channel that the filter has not all those before it of.
+    /// Samples at the beginning of a channel for which the filter lacks some of those before.
     #[must_use]
     pub fn order(&self, channel: usize) -> usize {
         self.0.get(channel).map_or(0, Vec::len)
