@@ -177,14 +177,27 @@ impl Base<'_> {
     }
 
     /// Change of the prediction of a run, divided by the share.
-    fn change(&self, run: usize, predicted: Signals, share: f64) -> Signals {
-        let mut change = discrepancy(self.problem, run, predicted);
-        for (signal, before) in change.iter_mut().zip(&self.at.discrepancy[run]) {
-            let each = signal.iter_mut().zip(before);
-            each.for_each(|(after, before)| *after = (before - *after) / share);
+    fn change(&self, run: usize, mut predicted: Signals, share: f64) -> Signals {
+        let before = &self.at.discrepancy[run];
+        if self.problem.is_whitened() {
+            predicted = discrepancy(self.problem, run, predicted);
+            for (signal, before) in predicted.iter_mut().zip(before) {
+                let each = signal.iter_mut().zip(before);
+                each.for_each(|(after, before)| *after = (before - *after) / share);
+            }
+        } else {
+            let measured = &self.problem.runs[run].measured;
+            for ((signal, measured), before) in predicted.iter_mut().zip(measured).zip(before) {
+                let Some(measured) = measured else {
+                    signal.fill(0.0);
+                    continue;
+                };
+                let each = signal.iter_mut().zip(measured).zip(before);
+                each.for_each(|((p, m), before)| *p = (*p - (m - before)) / share);
+            }
         }
-        self.reach.keep(run, &mut change);
-        change
+        self.reach.keep(run, &mut predicted);
+        predicted
     }
 
     /// What trials have in common with the base and with each other: all at once, as the sensitivities of the base are
