@@ -99,7 +99,8 @@ fn between_samples(
     Ok((0..problem.model.outputs.len()).map(of_channel).collect())
 }
 
-fn squared_distance(one: &[f64], other: &[f64]) -> f64 {
+/// Sum of the squared differences of two signals.
+pub(crate) fn squared_distance(one: &[f64], other: &[f64]) -> f64 {
     let apart = one.iter().zip(other).map(|(a, b)| (a - b).powi(2));
     apart.sum()
 }

@@ -196,7 +196,7 @@ fn least_seen(seen: &[Vec<Seen>], input: usize) -> Option<f64> {
     stds.min_by(f64::total_cmp)
 }
 
-fn square_sum(values: &[f64]) -> f64 {
+pub(crate) fn square_sum(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, Problem, Weights, deviations};
 
+use crate::accuracy::squared_distance;
 use crate::gap::{Prediction, predict, total};
 
 /// Largest spread of a channel by which a set is judged, over its standard deviation: a set whose parameters say nothing is
@@ -53,8 +54,7 @@ fn mean_squares(one: &Prediction, other: &Prediction) -> Vec<f64> {
     let of_channel = |c: usize| {
         let (mut square, mut count) = (0.0, 0);
         for (one, other) in one.discrepancy.iter().zip(&other.discrepancy) {
-            let apart = one[c].iter().zip(&other[c]);
-            square += apart.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            square += squared_distance(&one[c], &other[c]);
             count += one[c].len();
         }
         square / count.max(1) as f64

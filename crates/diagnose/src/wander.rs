@@ -11,7 +11,7 @@ use simgap_estimate::{EstimateError, Fit, Problem, Weights, Whitening};
 use simgap_simulate::Run;
 
 use crate::gap::noise_variance;
-use crate::input_noise::draws;
+use crate::input_noise::{draws, square_sum};
 
 /// A channel wanders that the noise of the inputs moves by more than this multiple of what its sensor adds, rms, and by more
 /// than this share of its motion.
@@ -58,11 +58,7 @@ pub(crate) fn whitening(
     let wanders = coloured.iter().zip(&sensors).zip(problem.motion_std());
     let mut wanders = wanders.map(|((signals, sensor), std)| {
         let count: usize = signals.iter().map(|signal| signal.len()).sum();
-        let square: f64 = signals
-            .iter()
-            .flat_map(|signal| signal.iter())
-            .map(|r| r * r)
-            .sum();
+        let square: f64 = signals.iter().map(|signal| square_sum(signal)).sum();
         let rms = (square / count.max(1) as f64).sqrt();
         rms > WANDERS * sensor.sqrt() && rms > MUCH * std
     });

@@ -64,6 +64,46 @@ pub(crate) struct Regressor {
     pub(crate) run: Option<usize>,
 }
 
+/// The normal equations of a set at a fit of it.
+pub(crate) struct LinearSystem {
+    pub(crate) layout: Layout,
+    pub(crate) theta: Vec<f64>,
+    at: Linearised,
+    objective: f64,
+    channel_weights: Vec<f64>,
+    pub(crate) hessian: Mat<f64>,
+    gradient: Vec<f64>,
+}
+
+impl LinearSystem {
+    pub(crate) fn at(
+        problem: &Problem,
+        fit: &Fit,
+        weights: &Weights,
+    ) -> Result<LinearSystem, EstimateError> {
+        let freedom = Freedom {
+            nominal_prior: weights.nominal_prior,
+            shared_held: false,
+        };
+        let layout = Layout::new(&fit.estimate, problem, freedom);
+        let theta = layout.pack(&fit.estimate);
+        let at = linearise(problem, &layout, &theta)?;
+        let merit = Merit::new(problem, weights);
+        let (objective, variance) = merit.of(&layout, &theta, &at.discrepancy);
+        let channel_weights = merit.weights(&variance);
+        let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
+        Ok(LinearSystem {
+            layout,
+            theta,
+            at,
+            objective,
+            channel_weights,
+            hessian,
+            gradient,
+        })
+    }
+}
+
 /// Prepares the score of many effects at one fit.
 ///
 /// # Errors
@@ -73,18 +113,15 @@ pub fn linearise_at<'a>(
     fit: &'a Fit,
     weights: &Weights,
 ) -> Result<Base<'a>, EstimateError> {
-    let freedom = Freedom {
-        nominal_prior: weights.nominal_prior,
-        shared_held: false,
-    };
-    let layout = Layout::new(&fit.estimate, problem, freedom);
-    let theta = layout.pack(&fit.estimate);
-    let at = linearise(problem, &layout, &theta)?;
-    let merit = Merit::new(problem, weights);
-    let reach = Reach::of(problem, &fit.estimate.effects);
-    let (objective, variance) = merit.of(&layout, &theta, &at.discrepancy);
-    let channel_weights = merit.weights(&variance);
-    let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
+    let LinearSystem {
+        layout,
+        at,
+        objective,
+        channel_weights,
+        hessian,
+        gradient,
+        ..
+    } = LinearSystem::at(problem, fit, weights)?;
     let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
     let squared = |run: &Signals| inner(run, run, &channel_weights);
     let energy = at.discrepancy.iter().map(squared).sum();
@@ -95,7 +132,7 @@ pub fn linearise_at<'a>(
         layout,
         at,
         objective,
-        reach,
+        reach: Reach::of(problem, &fit.estimate.effects),
         weights: channel_weights,
         factor: factorise(&hessian),
         gradient,
@@ -186,6 +223,7 @@ impl Base<'_> {
                 each.for_each(|(after, before)| *after = (before - *after) / share);
             }
         } else {
+            // Without a filter, rounded less than by way of another discrepancy.
             let measured = &self.problem.runs[run].measured;
             for ((signal, measured), before) in predicted.iter_mut().zip(measured).zip(before) {
                 let Some(measured) = measured else {

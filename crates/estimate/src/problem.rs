@@ -177,13 +177,10 @@ impl Problem {
             if order == 0 {
                 return self.motion_std_of(channel);
             }
-            let measured = self
-                .runs
-                .iter()
-                .filter_map(|r| r.measured[channel].as_ref());
-            let filtered: Vec<Vec<f64>> = measured
+            let filtered: Vec<Vec<f64>> = self
+                .measured(channel)
                 .map(|values| {
-                    let mut values = values.clone();
+                    let mut values = values.to_vec();
                     self.whitening.apply(channel, &mut values);
                     values.split_off(order.min(values.len()))
                 })
@@ -203,12 +200,13 @@ impl Problem {
     }
 
     fn motion_std_of(&self, channel: usize) -> f64 {
-        let measured = || {
-            self.runs
-                .iter()
-                .filter_map(|r| r.measured[channel].as_ref())
-        };
-        rms_about_mean(|| measured().flatten())
+        rms_about_mean(|| self.measured(channel).flatten())
+    }
+
+    /// The values of a channel, run by run.
+    pub(crate) fn measured(&self, channel: usize) -> impl Iterator<Item = &[f64]> {
+        let runs = self.runs.iter();
+        runs.filter_map(move |run| run.measured[channel].as_deref())
     }
 
     /// First guess of the initial state of each run, from the measured displacements and

@@ -59,7 +59,8 @@ impl Problem {
             time_step_s: step,
             duration_s: positive(longest),
             displacement_range_m: range(path.displacement.iter().copied()),
-            signal_range: channel.map_or([-1.0, 1.0], |i| range(self.measured(i))),
+            signal_range: channel
+                .map_or([-1.0, 1.0], |i| range(self.measured(i).flatten().copied())),
             signal_step,
             signal_level,
             stiffness_n_per_m: if stiffness > 0.0 {
@@ -83,15 +84,7 @@ impl Problem {
     /// on no coarse lattice.
     #[must_use]
     pub fn lattice_of(&self, channel: usize) -> Option<(f64, f64)> {
-        lattice(self.measured(channel).collect())
-    }
-
-    /// The values of a channel in all runs.
-    fn measured(&self, channel: usize) -> impl Iterator<Item = f64> {
-        let runs = self.runs.iter();
-        runs.filter_map(move |run| run.measured[channel].as_deref())
-            .flatten()
-            .copied()
+        lattice(self.measured(channel).flatten().copied().collect())
     }
 
     /// Strongest lines of what a fit leaves of the longest run, Hz: of the channel at the place, of

@@ -12,10 +12,8 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use simgap_effects::Placed;
 
-use crate::fit::Merit;
-use crate::layout::{Freedom, Layout};
-use crate::linearise::linearise;
-use crate::normal::{factorise, normal_equations};
+use crate::base::LinearSystem;
+use crate::normal::factorise;
 use crate::{EstimateError, Fit, Problem, Weights};
 
 /// Variance of a value, in units of its own scale, from which the data do not see it at all.
@@ -32,16 +30,12 @@ pub fn deviations(
     fit: &Fit,
     weights: &Weights,
 ) -> Result<Vec<Vec<Placed>>, EstimateError> {
-    let freedom = Freedom {
-        nominal_prior: weights.nominal_prior,
-        shared_held: false,
-    };
-    let layout = Layout::new(&fit.estimate, problem, freedom);
-    let theta = layout.pack(&fit.estimate);
-    let at = linearise(problem, &layout, &theta)?;
-    let merit = Merit::new(problem, weights);
-    let (_, variance) = merit.of(&layout, &theta, &at.discrepancy);
-    let (hessian, _) = normal_equations(&layout, &theta, &at, &merit.weights(&variance));
+    let LinearSystem {
+        layout,
+        theta,
+        hessian,
+        ..
+    } = LinearSystem::at(problem, fit, weights)?;
     let steps = directions(&hessian, layout.shared_len()).unwrap_or_default();
     let deviation = |step: Vec<f64>| {
         let mut moved = theta.clone();
