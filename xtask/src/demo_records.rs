@@ -123,12 +123,7 @@ fn picture(folder: &Path) -> Result<String, DemoError> {
     let read = |name: &str| simgap_record::read_csv(&folder.join(name));
     let train = [read("train-1.csv")?, read("train-2.csv")?];
     let check = [read("check.csv")?];
-    let request = Request {
-        model: &model,
-        train: &train,
-        check: &check,
-        withheld: &[],
-    };
+    let request = Request::new(&model, &train, &check);
     let outcome = diagnose(&request, &|_| {})?;
     let Some(series) = outcome.series.first() else {
         return Err(DemoError::NoSeries);

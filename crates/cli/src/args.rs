@@ -66,6 +66,9 @@ pub(crate) struct DiagnoseArgs {
     /// Threads; the result does not depend on it [default: all cores].
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<usize>,
+    /// Seconds after which the search ends with the best answer so far.
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) budget: Option<f64>,
     /// Seed of anything random; the diagnosis has nothing random so far.
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub(crate) seed: u64,

@@ -45,6 +45,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
         out: args.out.join("diagnosis"),
         withhold: vec![],
         jobs: None,
+        budget: None,
         seed: 0,
         format: Format::Human,
     })

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use simgap_diagnose::{CheckSeries, Outcome, Request, diagnose};
 use simgap_model::Model;
@@ -50,11 +51,12 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     let stems: Vec<String> = judged.iter().map(|path| stem(path)).collect();
     let folders = [PREDICTIONS, PICTURES];
     Folder::attempt(&args.out, &folders, &files(&args.out, &stems, &[]))?;
+    let begun = Instant::now();
+    let is_spent = || args.budget.is_some_and(|budget| begun.elapsed().as_secs_f64() > budget);
     let request = Request {
-        model: &model,
-        train: &train,
-        check: &check,
         withheld: &args.withhold,
+        is_spent: &is_spent,
+        ..Request::new(&model, &train, &check)
     };
     let mut outcome = in_pool(args.jobs, || {
         let steps = Steps::new();

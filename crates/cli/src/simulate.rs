@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use simgap_effects::Action;
-use simgap_estimate::{Problem, Weights, fit_initial_states, simulator_at};
+use simgap_estimate::{Problem, FitOptions, fit_initial_states, simulator_at};
 use simgap_record::write_csv_atomic;
 use simgap_simulate::{Run, output_unit};
 
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     if measured && !args.from_rest {
         // The record need not start at rest, nor with the even half of an alternation: its outputs
         // say how it starts.
-        let weights = Weights::independent(model.outputs.len());
+        let weights = FitOptions::white(model.outputs.len());
         let mut best = fit_initial_states(&problem, &[], &weights).map_err(failed)?;
         if problem
             .given

@@ -1,176 +1,176 @@
-//! The check records: what is told of them, and what a set is judged by.
+//! The check records: how far the gap shrinks, and whether they contradict the answer.
+//!
+//! Nothing is chosen, started or fitted by them but how each begins.
 
 use rayon::prelude::*;
 use simgap_effects::Placed;
-use simgap_estimate::{EstimateError, Fit, Problem, Weights};
-use simgap_simulate::{Run, substeps_for};
+use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
+use simgap_inference::CandidateModel;
+use simgap_inference::noise_model::{accuracy, input_noise};
+use simgap_simulate::{MemberPath, Run, substeps_for};
 
-use crate::accuracy::accuracy_of_check;
 use crate::data::excerpts;
-use crate::gap::{Prediction, gap, predict};
-use crate::hypothesis::Hypothesis;
-use crate::input_noise::input_noise;
-use crate::pipeline::Answer;
+use crate::gap::{Prediction, gap, predict, total};
+use crate::multi_step::contradicts;
 use crate::spread::spread_of_check;
-use crate::{Gap, answer, jumps, stretches, unexplained};
+use crate::Gap;
+use crate::pipeline::place_of;
+
+/// What is left of the gap, rms, from which an answer is incomplete.
+const INCOMPLETE: f64 = 0.05;
+/// How well noise is known: its square is told to a tenth.
+const NOISE_KNOWN: f64 = 1.1;
 
 /// The check records.
 pub(crate) struct Check<'a> {
     /// As they are told.
     pub(crate) problem: Problem,
-    /// As a set is judged by them, where noise of the inputs leads the plant away: with whitened discrepancies.
-    whitened: Option<Problem>,
     train: &'a Problem,
     recalibrated: &'a Fit,
-    plain: Weights,
+    plain: FitOptions,
 }
 
-/// What a set leaves of the check records.
+/// What an answer leaves of the check records.
 pub(crate) struct Checked {
     /// By the model as given, with re-estimated parameters, and corrected.
     pub(crate) predictions: Vec<Prediction>,
     /// The gap that is told.
     pub(crate) gap: Gap,
-    /// What the set is judged by: over all noise there is.
-    pub(crate) judged: Gap,
+    /// Share of the gap that is left above noise.
+    pub(crate) left: f64,
+    /// The same of each channel.
+    pub(crate) left_of_channels: Vec<f64>,
+    /// Nothing is left but noise and the accuracy of the simulation.
+    pub(crate) is_complete: bool,
+    /// The corrected model predicts worse than re-estimated parameters do.
+    pub(crate) is_refuted: bool,
+    /// The motion at each output along the first record, with the corrected model.
+    pub(crate) paths: Vec<Vec<MemberPath>>,
+    /// Sample rate of the first record, Hz.
+    pub(crate) sample_rate_hz: f64,
+    /// What a reader must know.
+    pub(crate) notes: Vec<String>,
 }
 
 impl<'a> Check<'a> {
     /// `train` is what was learned from, `recalibrated` its fit of parameters alone.
-    ///
-    /// # Errors
-    /// [`EstimateError`] when the model cannot be propagated.
     pub(crate) fn new(
         train: &'a Problem,
         recalibrated: &'a Fit,
         runs: Vec<Run>,
     ) -> Result<Check<'a>, EstimateError> {
-        let mut whitened = train.with_runs(runs);
-        whitened.substeps = whitened
-            .substeps
-            .max(substeps_for(&whitened.model, &whitened.runs)?);
+        let mut problem = train.with_runs(runs).unfiltered();
+        let substeps = substeps_for(&problem.model, &problem.runs)?;
+        problem.substeps = problem.substeps.max(substeps);
         Ok(Check {
-            plain: Weights::independent(whitened.model.outputs.len()),
-            problem: whitened.unfiltered(),
-            whitened: whitened.is_whitened().then_some(whitened),
+            plain: FitOptions::white(problem.model.outputs.len()),
+            problem,
             train,
             recalibrated,
         })
     }
 
-    /// The gap that `predictions` leave, with that at `last` as the corrected one, made with `placed`.
-    pub(crate) fn gap(
+    /// What an answer leaves: `placed` on the model, as it was fitted to the training records.
+    pub(crate) fn of(
         &self,
+        (estimate, options): (&Fit, &FitOptions),
         placed: &[Placed],
-        predictions: &[Prediction],
-        last: usize,
-    ) -> Result<Gap, EstimateError> {
-        self.gap_in(&self.problem, placed, predictions, last)
-    }
-
-    fn gap_in(
-        &self,
-        problem: &Problem,
-        placed: &[Placed],
-        predictions: &[Prediction],
-        last: usize,
-    ) -> Result<Gap, EstimateError> {
-        let driven = input_noise(problem, placed, &self.plain, &self.train.runs)?;
-        let corrected = (placed, &predictions[last]);
-        Ok(gap(
-            problem,
-            &predictions[0],
-            &predictions[1],
-            corrected,
-            &driven,
-        ))
-    }
-
-    /// What an answer, `placed` on the model, leaves.
-    ///
-    /// # Errors
-    /// [`EstimateError`] when the model cannot be propagated.
-    pub(crate) fn of(&self, answer: &Answer, placed: &[Placed]) -> Result<Checked, EstimateError> {
-        let predictions = self.predictions(&self.problem, placed)?;
-        let gap = self.gap(placed, &predictions, 2)?;
-        let judged = match &self.whitened {
-            None => self.judged(&self.problem, answer, placed, (&predictions, &gap))?,
-            Some(whitened) => {
-                let predictions = self.predictions(whitened, placed)?;
-                let gap = self.gap_in(whitened, placed, &predictions, 2)?;
-                self.judged(whitened, answer, placed, (&predictions, &gap))?
-            }
+    ) -> Result<Checked, EstimateError> {
+        let known = &self.recalibrated.estimate.nominal[..];
+        let predictions = [&[], known, placed]
+            .into_par_iter()
+            .map(|effects| predict(&self.problem, effects, &self.plain))
+            .collect::<Result<Vec<Prediction>, EstimateError>>()?;
+        let driven = input_noise(&self.problem, placed, &self.plain, &self.train.runs)?;
+        let corrected = (placed, &predictions[2]);
+        let gap = gap(&self.problem, &predictions[0], &predictions[1], corrected, &driven);
+        let spread = match self.train.is_whitened() {
+            // Over whole records noise of the inputs is all that is left; it is told beside the gap.
+            true => 0.0,
+            false => spread_of_check(&self.problem, (self.train, estimate, options), &predictions[2])?,
         };
+        let of_simulation = self.accuracy(placed, &predictions[2])?;
+        let left_of_channels = left_of_channels(&gap, spread, &of_simulation);
+        let nominal = total(&gap.channels.iter().map(|c| c.nominal).collect::<Vec<_>>());
+        let left = total(&left_of_channels) / nominal.max(f64::MIN_POSITIVE);
+        let is_worse = gap.corrected > gap.recalibrated.max(gap.noise_floor)
+            && gap.corrected > gap.nominal.min(gap.recalibrated) * NOISE_KNOWN;
+        let follows = || contradicts(&self.problem, known, placed, &self.plain).map(|c| !c);
+        let mut notes = vec![];
+        let is_refuted = is_worse && !follows()?;
+        if is_worse && !is_refuted {
+            notes.push(
+                "over a whole check record the corrected model departs from the measurement, in short stretches it follows: the motion \
+                 depends on differences that no estimate resolves"
+                    .into(),
+            );
+        }
+        if self.train.is_whitened() {
+            notes.push(
+                "noise of the inputs is integrated by this plant: effects were judged by whitened residuals; the gap over whole records \
+                 is mostly that noise"
+                    .into(),
+            );
+        }
         Ok(Checked {
+            is_complete: left <= INCOMPLETE,
+            left: left.min(1.0),
+            left_of_channels,
+            is_refuted,
+            paths: vec![self.paths(&predictions[2])],
             predictions,
             gap,
-            judged,
+            sample_rate_hz: self.problem.runs.first().map_or(1.0, |run| 1.0 / run.time_step_s),
+            notes,
         })
     }
 
-    fn predictions(
-        &self,
-        problem: &Problem,
-        placed: &[Placed],
-    ) -> Result<Vec<Prediction>, EstimateError> {
-        [&[], &self.recalibrated.estimate.nominal[..], placed]
-            .into_par_iter()
-            .map(|effects| predict(problem, effects, &self.plain))
+    /// Accuracy of the simulation over the motion of each channel.
+    fn accuracy(&self, placed: &[Placed], last: &Prediction) -> Result<Vec<f64>, EstimateError> {
+        let mut fit = self.recalibrated.clone();
+        fit.estimate.nominal = placed.iter().filter(|p| simgap_inference::is_nominal(p)).cloned().collect();
+        fit.estimate.initial.clone_from(&last.initial);
+        let delta = accuracy(&self.problem, &fit)?;
+        let std = self.problem.output_std();
+        Ok(delta.iter().zip(std).map(|(delta, std)| delta / std).collect())
+    }
+
+    /// The motion at each output along the first record.
+    fn paths(&self, prediction: &Prediction) -> Vec<MemberPath> {
+        let first = prediction.simulators.first().zip(self.problem.runs.first());
+        let Some(((simulator, run), initial)) = first.zip(prediction.initial.first()) else {
+            return vec![];
+        };
+        let outputs = self.problem.model.outputs.iter();
+        let path = outputs.map(|output| {
+            let place = place_of(output)?;
+            simulator.path(run, initial, &place).ok()
+        });
+        path.map(Option::unwrap_or_default).collect()
+    }
+
+    /// What single sets leave of excerpts of the check records.
+    pub(crate) fn held_back(&self, sets: &[&CandidateModel]) -> Result<Vec<f64>, EstimateError> {
+        let short = self.problem.with_runs(excerpts(&self.problem.runs));
+        sets.par_iter()
+            .map(|set| {
+                let placed: Vec<Placed> = set.fit.estimate.placed().cloned().collect();
+                Ok(total(&predict(&short, &placed, &self.plain)?.nrmse))
+            })
             .collect()
     }
+}
 
-    /// The gap over all noise there is, where a force jumps without the samples at which it does.
-    fn judged(
-        &self,
-        problem: &Problem,
-        answer: &Answer,
-        placed: &[Placed],
-        (predictions, gap): (&[Prediction], &Gap),
-    ) -> Result<Gap, EstimateError> {
-        let known = &self.recalibrated.estimate.nominal;
-        let unknown = accuracy_of_check(&self.problem, known, &predictions[1].initial)?;
-        let between = jumps::gap_between(problem, &answer.set, (placed, predictions), gap);
-        let gap = between.as_ref().unwrap_or(gap);
-        let judged = gap.over_all_noise(unknown);
-        if !unexplained::may_be_spread(answer, &judged) {
-            return Ok(judged);
-        }
-        let fitted = (self.train, &answer.estimate, &answer.weights);
-        let spread = spread_of_check(problem, fitted, &predictions[2])?;
-        Ok(gap.over_all_noise(unknown.hypot(spread)))
-    }
-
-    /// The gap where `placed` starts anew in every stretch, if it leaves nothing but noise then.
-    pub(crate) fn followed_anew(&self, placed: &[Placed]) -> Option<Gap> {
-        let known = &self.recalibrated.estimate.nominal;
-        // A filter would see no beginning of a stretch; within one, noise of the inputs leads a plant less far.
-        let anew = stretches::gap_followed_anew(&self.problem, known, placed, &self.plain);
-        anew.ok().flatten()
-    }
-
-    /// What single effects leave of excerpts: as told, and as an answer is judged by it.
-    ///
-    /// # Errors
-    /// [`EstimateError`] when the model cannot be propagated.
-    pub(crate) fn held_back(&self, singles: &[Hypothesis]) -> Result<[Vec<f64>; 2], EstimateError> {
-        let of = |problem: &Problem| {
-            let short = problem.with_runs(excerpts(&problem.runs));
-            answer::held_back(&short, singles, &self.plain)
-        };
-        let told = of(&self.problem)?;
-        let judged = self
-            .whitened
-            .as_ref()
-            .map_or_else(|| Ok(told.clone()), of)?;
-        Ok([told, judged])
-    }
-
-    /// Said of records that a plant wanders in.
-    pub(crate) fn note(&self) -> Option<String> {
-        self.whitened.as_ref().map(|_| {
-            "noise of the inputs leads this plant away from any model over a record: effects were judged by what every sample \
-             adds to those before it; the gap over whole records is mostly that noise"
-                .to_owned()
+/// What is left of each channel above all noise, over its standard deviation.
+fn left_of_channels(gap: &Gap, spread: f64, accuracy: &[f64]) -> Vec<f64> {
+    let channels = gap.channels.iter().zip(accuracy);
+    channels
+        .map(|(channel, accuracy)| {
+            let noise = NOISE_KNOWN * channel.noise_floor.powi(2)
+                + channel.input_noise.powi(2)
+                + spread.powi(2)
+                + accuracy.powi(2);
+            (channel.corrected.powi(2) - noise).max(0.0).sqrt()
         })
-    }
+        .collect()
 }

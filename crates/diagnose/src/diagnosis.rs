@@ -19,12 +19,12 @@ pub struct Diagnosis {
     pub r#where: Where,
     /// Which effect causes it.
     pub verdict: Verdict,
-    /// What the answer leaves of the training records.
-    pub remainder: Remains,
     /// The single effects that fit best, at most twelve, by probability and then by gap.
     pub candidates: Vec<CandidateResult>,
     /// The experiment that would tell the rivals apart, if there are any.
     pub next_experiment: Option<String>,
+    /// Whether the search ended before it was done, by the limit it was given.
+    pub stopped_early: bool,
     /// What a reader must know: how records were held back, units converted, defects seen.
     pub notes: Vec<String>,
 }
@@ -177,10 +177,60 @@ pub enum Status {
 pub struct Verdict {
     /// Kind of answer.
     pub status: Status,
+    /// What is left of the check records is no more than noise and the accuracy of the simulation.
+    pub complete: bool,
+    /// What is left of them.
+    pub unexplained: Unexplained,
+    /// The check records contradict what the training records say.
+    pub refuted: bool,
+    /// The main cause may be a law that the catalogue lacks.
+    pub other: OtherCause,
     /// The named effects; empty for `none` and `unknown`.
     pub effects: Vec<NamedEffect>,
+    /// For `unknown`: the best set of the catalogue all the same.
+    pub leading: Vec<NamedEffect>,
     /// For `unknown`: what the remaining structure looks like. One sentence each.
     pub description: Vec<String>,
+}
+
+impl Default for Verdict {
+    /// Nothing but noise.
+    fn default() -> Verdict {
+        Verdict {
+            status: Status::None,
+            complete: true,
+            unexplained: Unexplained::default(),
+            refuted: false,
+            other: OtherCause::default(),
+            effects: vec![],
+            leading: vec![],
+            description: vec![],
+        }
+    }
+}
+
+/// What an answer leaves of the gap on the check records.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Unexplained {
+    /// rms of what is left above noise, over the rms of the gap of the model as given.
+    pub share: f64,
+    /// `gap`: what the share is of.
+    pub of: &'static str,
+    /// The same of each channel, of the gap of all.
+    pub channels: Vec<ChannelShare>,
+    /// In words; empty where nothing is left.
+    pub looks_like: String,
+}
+
+/// A cause that is not in the catalogue.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct OtherCause {
+    /// That it is the main cause.
+    pub probability: f64,
+    /// The place where a free law closes most; `None` where none was sought.
+    pub at: Option<Location>,
+    /// Share of the gap of the training records that a free law there closes.
+    pub closed: Option<f64>,
 }
 
 /// A named effect.
@@ -190,40 +240,14 @@ pub struct NamedEffect {
     pub kind: String,
     /// Where it acts.
     pub at: Location,
-    /// Probability that this and not a rival is the cause.
+    /// Probability that it, or one of `indistinguishable`, is part of the cause.
     pub probability: f64,
     /// Estimated values.
     pub parameters: Vec<NamedParameter>,
     /// What this data cannot tell from it.
     pub indistinguishable: Vec<Rival>,
-    /// Whether it shows signs of standing in for a law that the catalogue does not have; the last
-    /// sentence of `evidence` says which.
-    pub stand_in: bool,
     /// Why it is named, one sentence each.
     pub evidence: Vec<String>,
-}
-
-/// What the best set of effects leaves of the training records.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Remains {
-    /// Its rms over that of the white noise; one where nothing is left.
-    pub over_noise: f64,
-    /// The place where a law of any shape would explain most of what stands out of the noise.
-    pub law_at: Option<Location>,
-    /// How much of the square it would explain; a large share says that the law of this place is
-    /// not the one named.
-    pub law_share: f64,
-}
-
-impl Default for Remains {
-    /// Nothing but noise.
-    fn default() -> Remains {
-        Remains {
-            over_noise: 1.0,
-            law_at: None,
-            law_share: 0.0,
-        }
-    }
 }
 
 /// An estimated value.

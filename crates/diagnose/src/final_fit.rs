@@ -1,7 +1,7 @@
 //! The answer, fitted to all samples.
 
 use simgap_effects::{Family, Placed};
-use simgap_estimate::{EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states};
+use simgap_estimate::{EstimateError, Fit, Problem, Start, FitOptions, fit, fit_initial_states};
 
 /// Fits a set that was found on an excerpt to whole records.
 ///
@@ -16,7 +16,7 @@ pub(crate) fn fit_to_all(
     excerpt: &Problem,
     found: &Start,
     as_given: &[Vec<f64>],
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Fit, EstimateError> {
     let mut runs = excerpt.runs.iter().zip(&train.runs);
     let is_all = runs.all(|(part, run)| part.len == run.len);

@@ -1,13 +1,12 @@
 //! How large the gap is on the check records.
 
-use simgap_effects::{Action, Placed};
-use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states, simulator_at};
-use simgap_model::Location;
-use simgap_signal::noise::white_noise_std;
+use simgap_effects::Placed;
+use simgap_estimate::{EstimateError, Problem, FitOptions, fit_initial_states, simulator_at};
+use simgap_inference::noise_model::{InputNoise, noise_variance, stepped};
 use simgap_simulate::Simulator;
 
 use crate::diagnosis::{ChannelGap, Gap};
-use crate::input_noise::InputNoise;
+
 
 /// A nominal gap that stands out of the noise by less than this share of its square is none: what
 /// is closed of it would be a ratio of roundings.
@@ -29,7 +28,7 @@ pub(crate) struct Prediction {
 pub(crate) fn predict(
     check: &Problem,
     effects: &[Placed],
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Prediction, EstimateError> {
     let fit = fit_initial_states(check, effects, weights)?;
     let std = check.output_std();
@@ -68,66 +67,6 @@ pub(crate) fn noise_floor(check: &Problem, effects: &[Placed], corrected: &Predi
         .collect()
 }
 
-/// Which channels effects store in steps.
-pub(crate) fn stepped(problem: &Problem, effects: &[Placed]) -> Vec<bool> {
-    let at = |channel: &str| {
-        effects.iter().any(|placed| {
-            placed.at == Location::Channel(channel.to_string())
-                && matches!(placed.action(), Action::Sampling(map) if map.is_stepped())
-        })
-    };
-    let outputs = problem.model.outputs.iter();
-    outputs.map(|output| at(&output.channel)).collect()
-}
-
-/// Variance of the white noise in each channel of discrepancies, over all runs.
-///
-/// Where values are stored in steps, noise moves some of them by a step and most not at all: there
-/// the robust estimate would be zero. Samples that are clipped, lost or struck hold no noise and say nothing of that of
-/// the others.
-pub(crate) fn noise_variance(discrepancy: &[Vec<Vec<f64>>], stepped: &[bool]) -> Vec<f64> {
-    (0..stepped.len())
-        .map(|c| {
-            let (mut square, mut count) = (0.0, 0.0);
-            for run in discrepancy {
-                count += run[c].len() as f64;
-                let noisy = match stepped[c] {
-                    true => run[c].clone(),
-                    false => holding_noise(&run[c]),
-                };
-                let sigma = match white_noise_std(&noisy) {
-                    Ok(noise) if !stepped[c] => noise.std,
-                    _ => short_noise(&noisy),
-                };
-                square += sigma * sigma * noisy.len() as f64;
-            }
-            square / f64::max(count, 1.0)
-        })
-        .collect()
-}
-
-/// The discrepancies that hold noise: those of clipped, lost or struck samples are zero, or repeat themselves.
-fn holding_noise(discrepancy: &[f64]) -> Vec<f64> {
-    let repeats = |n: usize, other: Option<usize>| {
-        other.is_some_and(|other| discrepancy.get(other) == Some(&discrepancy[n]))
-    };
-    let holds_noise = |&n: &usize| {
-        discrepancy[n] != 0.0 && !repeats(n, n.checked_sub(1)) && !repeats(n, Some(n + 1))
-    };
-    let held = (0..discrepancy.len()).filter(holds_noise);
-    held.map(|n| discrepancy[n]).collect()
-}
-
-/// Noise of a run too short for the robust estimates, from its second differences, whose variance is
-/// 6 σ² for white noise. What moves from sample to sample counts as noise here.
-fn short_noise(values: &[f64]) -> f64 {
-    let squares: Vec<f64> = values
-        .windows(3)
-        .map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2) / 6.0)
-        .collect();
-    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
-}
-
 /// 1 − sqrt(max(corrected² − floor², 0) / max(nominal² − floor², tiny)).
 pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
     let left = (corrected * corrected - floor * floor).max(0.0);
@@ -139,8 +78,8 @@ pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
     }
 }
 
-/// The gap of the predictions by the model as given, with re-estimated parameters and corrected. `input_noise` is
-/// [what the noise of the inputs does](crate::input_noise).
+/// The gap of the predictions by the model as given, with re-estimated parameters and corrected. `input_noise` is what the noise of the
+/// inputs does.
 pub(crate) fn gap(
     check: &Problem,
     nominal: &Prediction,
@@ -184,40 +123,9 @@ pub(crate) fn gap(
     }
 }
 
-impl Gap {
-    /// The same gap over all noise there is, that of the inputs too, and over `unknown`, what they leave open between
-    /// their samples: what a set is judged by.
-    pub(crate) fn over_all_noise(&self, unknown: f64) -> Gap {
-        let noise_floor = self.noise_floor.hypot(self.input_noise).hypot(unknown);
-        Gap {
-            noise_floor,
-            closed: closed(self.nominal, self.corrected, noise_floor),
-            ..self.clone()
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn verify_clipped_samples_hold_no_noise() {
-        let mut word = 7_u64;
-        let mut unit = || {
-            word = word
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (word >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        };
-        let noise: Vec<f64> = (0..8000).map(|_| 12_f64.sqrt() * unit()).collect();
-        // Two thirds of the samples clipped, at a level that is not quite known.
-        let clipped = (0..8000).map(|n| if n % 60 < 40 { 1e-3 } else { noise[n] });
-        let run = vec![clipped.collect::<Vec<f64>>()];
-        let of = |stepped: bool| noise_variance(std::slice::from_ref(&run), &[stepped])[0];
-        assert!((3.0 * of(false) - 1.0).abs() < 0.2, "{}", of(false));
-        assert!(of(true) > 0.0);
-    }
 
     #[test]
     fn verify_closed_figures_of_the_contract() {

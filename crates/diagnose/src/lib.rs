@@ -49,7 +49,7 @@
 //!     csv += &format!("{t:.2},{force:.4},{:.3}\n", force);
 //! }
 //! let records = [parse_csv("slow.csv", csv.as_bytes())?];
-//! let request = Request { model: &model, train: &records, check: &[], withheld: &[] };
+//! let request = Request::new(&model, &records, &[]);
 //! let outcome = diagnose(&request, &|_| {})?;
 //! let gap = &outcome.diagnosis.gap;
 //! assert!(gap.corrected < 0.1 * gap.nominal);
@@ -57,44 +57,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod accuracy;
-mod afar;
-mod answer;
 mod check;
-mod common_cause;
 pub mod compare;
-mod confirm;
 mod data;
-mod degenerate;
+mod decide;
+mod describe;
 mod diagnosis;
-mod difference;
 mod error;
-mod evidence;
 mod final_fit;
 mod gap;
-mod hypothesis;
-mod input_noise;
-mod jumps;
-mod lines;
 mod locate;
-mod out_of_sight;
+mod multi_step;
 mod outcome;
-mod pairs;
 mod parity;
 mod pipeline;
-mod refuted;
-mod remainder;
-mod rounding;
-mod search;
-mod shooting;
-mod slow;
 mod spread;
-mod stand_in;
-mod stretches;
 mod structure;
-mod unexplained;
-mod verdict;
-mod wander;
 
 pub use diagnosis::*;
 pub use error::DiagnoseError;

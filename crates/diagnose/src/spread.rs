@@ -10,9 +10,8 @@
 
 use rayon::prelude::*;
 use simgap_effects::Placed;
-use simgap_estimate::{EstimateError, Fit, Problem, Weights, deviations};
+use simgap_estimate::{EstimateError, Fit, Problem, FitOptions, deviations};
 
-use crate::accuracy::squared_distance;
 use crate::gap::{Prediction, predict, total};
 
 /// Largest spread of a channel by which a set is judged, over its standard deviation: a set whose parameters say nothing is
@@ -23,11 +22,11 @@ const MOST: f64 = 0.02;
 /// simulated are left out.
 pub(crate) fn spread_of_check(
     check: &Problem,
-    (train, estimate, weights): (&Problem, &Fit, &Weights),
+    (train, estimate, weights): (&Problem, &Fit, &FitOptions),
     corrected: &Prediction,
 ) -> Result<f64, EstimateError> {
     let deviations = deviations(train, estimate, weights)?;
-    let plain = Weights::independent(check.model.outputs.len());
+    let plain = FitOptions::white(check.model.outputs.len());
     let squares = deviations.par_iter().map(|placed: &Vec<Placed>| {
         let moved = predict(check, placed, &plain).ok()?;
         Some(mean_squares(&moved, corrected))
@@ -54,7 +53,8 @@ fn mean_squares(one: &Prediction, other: &Prediction) -> Vec<f64> {
     let of_channel = |c: usize| {
         let (mut square, mut count) = (0.0, 0);
         for (one, other) in one.discrepancy.iter().zip(&other.discrepancy) {
-            square += squared_distance(&one[c], &other[c]);
+            let apart = one[c].iter().zip(&other[c]).map(|(a, b)| (a - b).powi(2));
+            square += apart.sum::<f64>();
             count += one[c].len();
         }
         square / count.max(1) as f64

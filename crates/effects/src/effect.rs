@@ -3,7 +3,11 @@
 use simgap_integrate::exact::ForceLaw;
 use simgap_model::{Location, Model};
 
+use crate::prior::{Prior, usual_prior};
 use crate::{Line, SignalMap, Wave};
+
+/// A wrong nominal value is met as often as this many kinds of the catalogue together.
+const EVERYDAY: f64 = 3.0;
 
 /// Which part of the world an effect belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -342,6 +346,20 @@ pub trait Effect: Sync + Send {
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         let _ = (kind, values, scale);
         vec![]
+    }
+
+    /// What is known of the parameter at a place of [`Effect::parameters`] before any data, where things are of these
+    /// sizes.
+    fn prior(&self, place: usize, scale: &SiteScale) -> Prior {
+        usual_prior(self, place, scale)
+    }
+
+    /// How much likelier the kind is than one of the catalogue is on average, before any data.
+    fn prior_weight(&self) -> f64 {
+        match self.family() {
+            Family::NominalParameter => EVERYDAY,
+            _ => 1.0,
+        }
     }
 
     /// The factor that a nominal parameter is known to, whoever made the model; `None` where that is anyone's guess.

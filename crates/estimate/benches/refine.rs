@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use simgap_effects::{Placed, SiteScale, find};
-use simgap_estimate::{Candidate, Problem, Start, Weights, fit, linearise_at, score};
+use simgap_estimate::{Candidate, Problem, Start, FitOptions, fit, linearise_at, score};
 use simgap_model::{Location, Model};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
 
@@ -126,7 +126,7 @@ fn refinement_of_one_candidate(bencher: divan::Bencher<'_, '_>) {
         placed("cubic_stiffness", &[1e6]),
     ];
     let start = start(&problem, effects);
-    let weights = Weights::independent(2);
+    let weights = FitOptions::white(2);
     bencher.bench_local(|| fit(&problem, &start, &weights).unwrap());
 }
 
@@ -134,7 +134,7 @@ fn refinement_of_one_candidate(bencher: divan::Bencher<'_, '_>) {
 #[divan::bench(sample_count = 5)]
 fn score_of_one_candidate(bencher: divan::Bencher<'_, '_>) {
     let problem = problem();
-    let weights = Weights::independent(2);
+    let weights = FitOptions::white(2);
     let start = start(&problem, vec![placed("cubic_stiffness", &[4e6])]);
     let base = fit(&problem, &start, &weights).unwrap();
     let base = linearise_at(&problem, &base, &weights).unwrap();

@@ -13,7 +13,7 @@ use crate::linearise::{Linearised, Signals, discrepancy, linearise};
 use crate::normal::normal_equations;
 use crate::products::{inner, inner_products};
 use crate::reach::Reach;
-use crate::{Candidate, EstimateError, Fit, Problem, Start, Weights};
+use crate::{Candidate, EstimateError, Fit, Problem, Start, FitOptions};
 
 /// Columns that keep less than this of their energy past the nuisance are explained by it: a trial is not small enough
 /// to be linear beyond that.
@@ -79,10 +79,10 @@ impl LinearSystem {
     pub(crate) fn at(
         problem: &Problem,
         fit: &Fit,
-        weights: &Weights,
+        weights: &FitOptions,
     ) -> Result<LinearSystem, EstimateError> {
         let freedom = Freedom {
-            nominal_prior: weights.nominal_prior,
+            nominal_std: weights.nominal_std,
             shared_held: false,
         };
         let layout = Layout::new(&fit.estimate, problem, freedom);
@@ -111,7 +111,7 @@ impl LinearSystem {
 pub fn linearise_at<'a>(
     problem: &'a Problem,
     fit: &'a Fit,
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Base<'a>, EstimateError> {
     let LinearSystem {
         layout,
@@ -136,7 +136,7 @@ pub fn linearise_at<'a>(
         weights: channel_weights,
         factor: factorise(&hessian),
         gradient,
-        independent_samples: count * weights.independence.iter().sum::<f64>(),
+        independent_samples: count * weights.effective_share.iter().sum::<f64>(),
     })
 }
 
@@ -146,7 +146,7 @@ impl Base<'_> {
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated from the start.
-    pub fn fit(&self, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
+    pub fn fit(&self, start: &Start, weights: &FitOptions) -> Result<Fit, EstimateError> {
         let column = |layout: &Layout, run: usize, place: usize| {
             if !layout.is_nuisance(place) {
                 return None;

@@ -16,7 +16,7 @@
 
 use simgap_simulate::LANES;
 
-use crate::information::information;
+use crate::curvature::Curvature;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{
     Column, Linearised, Probe, Signals, complete, discrepancies_of, probe, reach,
@@ -24,7 +24,7 @@ use crate::linearise::{
 use crate::normal::{damped_step, normal_equations, variances};
 use crate::products::dot;
 use crate::reach::Reach;
-use crate::{EstimateError, Problem, Start, Weights};
+use crate::{EstimateError, Problem, Start, FitOptions};
 
 /// A parameter value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,9 +46,10 @@ pub struct Fit {
     pub variance: Vec<f64>,
     /// Intervals of the effects' parameters, effect by effect.
     pub intervals: Vec<Vec<Interval>>,
-    /// Information of the data on the values of hidden masses, each in units of its distance from where it
-    /// does nothing: the eigenvalues.
-    pub information: Vec<f64>,
+    /// The first sum of (1): minus the log-likelihood, but for a constant that all sets share.
+    pub misfit: f64,
+    /// How the data curve the log-likelihood at the estimate.
+    pub curvature: Curvature,
     /// Discrepancies of each run and channel at the estimate.
     pub discrepancy: Vec<Signals>,
     /// Steps taken.
@@ -67,7 +68,7 @@ const STALE: f64 = 2.0;
 ///
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated from the start.
-pub fn fit(problem: &Problem, start: &Start, weights: &Weights) -> Result<Fit, EstimateError> {
+pub fn fit(problem: &Problem, start: &Start, weights: &FitOptions) -> Result<Fit, EstimateError> {
     fit_with(problem, start, weights, false, None)
 }
 
@@ -84,12 +85,12 @@ pub(crate) struct Known<'a> {
 pub(crate) fn fit_with(
     problem: &Problem,
     start: &Start,
-    weights: &Weights,
+    weights: &FitOptions,
     shared_held: bool,
     known: Option<Known<'_>>,
 ) -> Result<Fit, EstimateError> {
     let freedom = Freedom {
-        nominal_prior: weights.nominal_prior,
+        nominal_std: weights.nominal_std,
         shared_held,
     };
     let layout = Layout::new(start, problem, freedom);
@@ -285,7 +286,8 @@ fn finish(
     let (hessian, _) = normal_equations(layout, theta, &at, &merit.weights(&variance));
     let all: Vec<usize> = (0..layout.len()).collect();
     let spread = variances(&hessian, &all);
-    let information = information(layout, &hessian, theta);
+    let misfit = objective - merit.prior(layout, theta);
+    let curvature = Curvature::of(layout, theta, &hessian);
     let estimate = layout.unpack(theta);
     let interval = |e: usize, i: usize, value: f64| {
         let Some(entry) = layout.entry(e, i) else {
@@ -315,7 +317,8 @@ fn finish(
         objective,
         variance,
         intervals,
-        information,
+        misfit,
+        curvature,
         discrepancy: at.discrepancy,
         iterations,
     }
@@ -324,20 +327,21 @@ fn finish(
 /// The objective (1) and the weights (3).
 pub(crate) struct Merit<'a> {
     problem: &'a Problem,
-    independence: Vec<f64>,
+    effective_share: Vec<f64>,
     floor: Vec<f64>,
     count: f64,
 }
 
 impl<'a> Merit<'a> {
-    pub(crate) fn new(problem: &'a Problem, weights: &Weights) -> Merit<'a> {
+    pub(crate) fn new(problem: &'a Problem, weights: &FitOptions) -> Merit<'a> {
         let std = problem.output_std();
         Merit {
             problem,
-            independence: weights.independence.clone(),
+            effective_share: weights.effective_share.clone(),
             floor: std
                 .iter()
-                .map(|s| (weights.accuracy * s).powi(2).max(f64::MIN_POSITIVE))
+                .zip(&weights.floor)
+                .map(|(s, floor)| (floor * s).powi(2).max(f64::MIN_POSITIVE))
                 .collect(),
             count: problem.runs.iter().map(|run| run.len as f64).sum(),
         }
@@ -345,7 +349,7 @@ impl<'a> Merit<'a> {
 
     /// What a factor on the squared discrepancy of every channel changes in J.
     pub(crate) fn of_a_factor(&self, factor: f64) -> f64 {
-        0.5 * self.independence.iter().sum::<f64>() * self.count * factor.ln()
+        0.5 * self.effective_share.iter().sum::<f64>() * self.count * factor.ln()
     }
 
     /// V_c, over the samples within reach.
@@ -370,18 +374,21 @@ impl<'a> Merit<'a> {
         let fit: f64 = variance
             .iter()
             .zip(&self.floor)
-            .zip(&self.independence)
+            .zip(&self.effective_share)
             .map(|((v, floor), rho)| 0.5 * rho * self.count * (v + floor).ln())
             .sum();
-        let prior: f64 = (0..theta.len())
-            .map(|i| 0.5 * ((theta[i] - layout.prior_mean[i]) / layout.prior_std[i]).powi(2))
-            .sum();
-        let value = fit + prior;
+        let value = fit + self.prior(layout, theta);
         (if value.is_nan() { f64::INFINITY } else { value }, variance)
     }
 
+    /// The second sum of (1).
+    pub(crate) fn prior(&self, layout: &Layout, theta: &[f64]) -> f64 {
+        let deviation = |i: usize| (theta[i] - layout.prior_mean[i]) / layout.prior_std[i];
+        (0..theta.len()).map(|i| 0.5 * deviation(i).powi(2)).sum()
+    }
+
     pub(crate) fn weights(&self, variance: &[f64]) -> Vec<f64> {
-        let floor = self.floor.iter().zip(&self.independence);
+        let floor = self.floor.iter().zip(&self.effective_share);
         variance
             .iter()
             .zip(floor)

@@ -7,7 +7,7 @@ use simgap_simulate::Simulator;
 
 use crate::drift;
 use crate::fit::fit_with;
-use crate::{EstimateError, Fit, Problem, Start, Weights};
+use crate::{EstimateError, Fit, Problem, Start, FitOptions};
 
 /// Fits what a record has of its own, with everything else as given: the initial state, and of
 /// effects with a clock or a hidden state the phase or the start.
@@ -19,7 +19,7 @@ use crate::{EstimateError, Fit, Problem, Start, Weights};
 pub fn fit_initial_states(
     problem: &Problem,
     effects: &[Placed],
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Fit, EstimateError> {
     let mut fixed = problem.with_runs(problem.runs.clone());
     let of_file = std::mem::take(&mut fixed.given);
@@ -78,7 +78,7 @@ pub fn fit_initial_states_from(
     problem: &Problem,
     effects: &[Placed],
     initial: Vec<Vec<f64>>,
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Fit, EstimateError> {
     let mut fixed = problem.with_runs(problem.runs.clone());
     fixed.given.extend(effects.iter().cloned());
@@ -87,7 +87,7 @@ pub fn fit_initial_states_from(
 
 /// An initial state of one run that begins at the right place of every wave whose travel nothing else shows: the best of
 /// fits from all over a period.
-fn at_its_place(alone: &Problem, state: &[f64], weights: &Weights) -> Vec<f64> {
+fn at_its_place(alone: &Problem, state: &[f64], weights: &FitOptions) -> Vec<f64> {
     let states = drift::places(alone, alone.given.iter(), state.to_vec());
     let fits = states
         .into_iter()
@@ -119,7 +119,7 @@ fn may_part(effects: &[Placed]) -> bool {
 fn released(
     fixed: &Problem,
     initial: &[Vec<f64>],
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Option<Result<Vec<Vec<f64>>, EstimateError>> {
     let mut free = fixed.with_runs(fixed.runs.clone());
     free.given.retain(|placed| !placed.action().is_dry());
@@ -138,7 +138,7 @@ const SHORTEST: usize = 32;
 fn led(
     fixed: &Problem,
     initial: Vec<Vec<f64>>,
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Vec<Vec<f64>>, EstimateError> {
     let mut led = Vec::with_capacity(initial.len());
     for (run, mut state) in fixed.runs.iter().zip(initial) {
@@ -156,7 +156,7 @@ fn led(
 fn states_from(
     fixed: &Problem,
     initial: Vec<Vec<f64>>,
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Fit, EstimateError> {
     let start = Start {
         effects: vec![],
@@ -186,7 +186,7 @@ fn best_of(
     alone: &Problem,
     own: &[Placed],
     state: Vec<f64>,
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Fit, EstimateError> {
     let mut starts: Vec<Vec<Placed>> = vec![own.iter().map(from_rest).collect()];
     for (e, placed) in own.iter().enumerate() {

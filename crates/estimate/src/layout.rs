@@ -7,6 +7,7 @@ use simgap_model::Location;
 use simgap_simulate::Run;
 
 use crate::Problem;
+use crate::curvature::Owner;
 use crate::fit::state_scale;
 
 /// A catalogue entry at a place, without values.
@@ -51,8 +52,8 @@ impl Start {
 /// What a fit may do with the start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Freedom {
-    /// Standard deviation of the prior on nominal parameters.
-    pub(crate) nominal_prior: f64,
+    /// Standard deviation of the prior on every nominal parameter, instead of the stated ones.
+    pub(crate) nominal_std: Option<f64>,
     /// Whether values that all records share stay as they are.
     pub(crate) shared_held: bool,
 }
@@ -135,8 +136,10 @@ impl Layout {
             }
         }
         for placed in &start.nominal {
+            let stated = || problem.stated_std(placed);
+            let std = freedom.nominal_std.unwrap_or_else(stated);
             for (parameter, &value) in placed.effect.parameters().iter().zip(&placed.values) {
-                layout.push_parameter(parameter, value.max(parameter.lower), freedom.nominal_prior);
+                layout.push_parameter(parameter, value.max(parameter.lower), std);
             }
         }
         layout.phases = layout.phases_of_clocks();
@@ -285,15 +288,17 @@ impl Layout {
         own(entry) + turned
     }
 
-    /// Every entry of an effect, with the effect and which of its values it is.
-    pub(crate) fn effect_entries(&self) -> impl Iterator<Item = (usize, &Placed, usize)> {
-        let shared = self.shared_values.iter().enumerate();
-        let own = (0..self.middle_s.len()).flat_map(move |run| {
-            let values = self.own_values.iter().enumerate();
-            values.map(move |(i, key)| (self.run_offset(run) + i, key))
-        });
-        let each = shared.chain(own);
-        each.map(|(entry, &(e, i))| (entry, &self.effects[e], i))
+    /// What each entry is a value of.
+    pub(crate) fn owners(&self) -> Vec<Owner> {
+        let of_effect = |&(e, i): &(usize, usize)| Owner::Effect(e, i);
+        let mut owners: Vec<Owner> = self.shared_values.iter().map(of_effect).collect();
+        let nominal = self.nominal.iter().enumerate();
+        owners.extend(nominal.flat_map(|(n, p)| (0..p.values.len()).map(move |i| Owner::Nominal(n, i))));
+        for _ in &self.middle_s {
+            owners.extend(self.own_values.iter().map(of_effect));
+            owners.extend((0..self.state_len).map(|_| Owner::State));
+        }
+        owners
     }
 
     pub(crate) fn pack(&self, start: &Start) -> Vec<f64> {

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use simgap_effects::{Placed, find};
-//! use simgap_estimate::{Problem, Start, Weights, fit};
+//! use simgap_estimate::{Problem, Start, FitOptions, fit};
 //! use simgap_model::{Location, Model};
 //! use simgap_simulate::{Run, Simulator};
 //!
@@ -58,16 +58,16 @@
 //!     nominal: vec![],
 //!     initial: problem.initial_guess(),
 //! };
-//! let found = fit(&problem, &start, &Weights::independent(1))?;
+//! let found = fit(&problem, &start, &FitOptions::white(1))?;
 //! assert!((found.estimate.effects[0].values[0] - 1.1).abs() < 1e-3);
 //! assert!((found.estimate.initial[0][0] - 0.001).abs() < 1e-5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod base;
+mod curvature;
 mod drift;
 mod fit;
-mod information;
 mod initial;
 mod layout;
 mod linearise;
@@ -81,12 +81,13 @@ mod site;
 mod spread;
 mod whitening;
 
+pub use curvature::{Coordinate, Curvature, Owner};
 pub use base::{Base, linearise_at};
 pub use fit::{Fit, Interval, fit};
 pub use initial::{fit_initial_states, fit_initial_states_from, simulator_at};
 pub use layout::{Candidate, Start};
 pub use outright::score_outright;
-pub use problem::{Problem, Weights};
+pub use problem::{Problem, FitOptions};
 pub use score::{Score, score, score_shapes};
 pub use spread::deviations;
 pub use whitening::Whitening;

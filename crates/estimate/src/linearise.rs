@@ -365,7 +365,7 @@ mod tests {
 
     use super::*;
     use crate::layout::Freedom;
-    use crate::{Start, Weights};
+    use crate::{Start, FitOptions};
 
     const OSCILLATOR: &str = r#"schema = "simgap-model/1"
 name = "oscillator"
@@ -407,7 +407,7 @@ at = "block"
         let at = Location::Between(["block".into(), "ground".into()]);
         let placed = |kind, value| Placed::new(find(kind).unwrap(), at.clone(), vec![value]);
         let freedom = Freedom {
-            nominal_prior: Weights::independent(1).nominal_prior,
+            nominal_std: None,
             shared_held: false,
         };
         for friction in [0.0, 0.2] {

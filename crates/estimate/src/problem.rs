@@ -22,17 +22,17 @@ pub struct Problem {
     pub whitening: Whitening,
 }
 
-/// How strongly each channel and each nominal parameter counts.
+/// How a fit counts what it leaves, and when it stops.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Weights {
-    /// Independent samples per sample of each channel, 0 to 1: residuals with colour say less than
-    /// their number.
-    pub independence: Vec<f64>,
-    /// Residuals below this share of a channel's standard deviation count as perfect: neither the
-    /// integration nor any sensor is better.
-    pub accuracy: f64,
-    /// Standard deviation of the prior on each nominal parameter, relative to its value.
-    pub nominal_prior: f64,
+pub struct FitOptions {
+    /// Independent samples per sample of each channel, 0 to 1: correlated residuals say less than their number.
+    pub effective_share: Vec<f64>,
+    /// What no set is expected to explain of each channel (accuracy of the simulation, noise of the inputs), over the
+    /// standard deviation of the channel.
+    pub floor: Vec<f64>,
+    /// Standard deviation of the prior on each nominal parameter, relative to its value; `None` for what the model
+    /// states of each.
+    pub nominal_std: Option<f64>,
     /// A step that improves the objective by less than this is the last of a fit. One parameter
     /// gains half a unit from pure noise.
     pub converged: f64,
@@ -43,17 +43,21 @@ pub struct Weights {
     pub most_steps: usize,
 }
 
+/// Relative standard deviation of a nominal value of which the model says nothing.
+const STATED_STD: f64 = 0.02;
 /// Steps of a fit that is to be finished.
 const MOST_STEPS: usize = 25;
+/// Accuracy of a simulation over the standard deviation of a channel, where it was not measured.
+const ACCURACY: f64 = 5e-4;
 
-impl Weights {
-    /// Every sample independent, nominal parameters known to 2 %.
+impl FitOptions {
+    /// White noise in every channel, nominal parameters known as the model states.
     #[must_use]
-    pub fn independent(channels: usize) -> Weights {
-        Weights {
-            independence: vec![1.0; channels],
-            accuracy: 5e-4,
-            nominal_prior: 0.02,
+    pub fn white(channels: usize) -> FitOptions {
+        FitOptions {
+            effective_share: vec![1.0; channels],
+            floor: vec![ACCURACY; channels],
+            nominal_std: None,
             converged: 0.02,
             keep_nuisance: false,
             most_steps: MOST_STEPS,
@@ -149,6 +153,13 @@ impl Problem {
     #[must_use]
     pub fn state_len(&self) -> usize {
         2 * self.model.dof_count()
+    }
+
+    /// Standard deviation of the prior on the values of a nominal parameter, relative to them.
+    #[must_use]
+    pub fn stated_std(&self, placed: &Placed) -> f64 {
+        let _ = placed;
+        STATED_STD
     }
 
     /// Every nominal parameter of the model, as catalogue entries at their places.

@@ -14,7 +14,7 @@ use simgap_effects::Placed;
 
 use crate::base::LinearSystem;
 use crate::normal::factorise;
-use crate::{EstimateError, Fit, Problem, Weights};
+use crate::{EstimateError, Fit, Problem, FitOptions};
 
 /// Variance of a value, in units of its own scale, from which the data do not see it at all.
 const UNSEEN: f64 = 1.0;
@@ -28,7 +28,7 @@ const UNSEEN: f64 = 1.0;
 pub fn deviations(
     problem: &Problem,
     fit: &Fit,
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Vec<Vec<Placed>>, EstimateError> {
     let LinearSystem {
         layout,

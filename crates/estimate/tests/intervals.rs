@@ -4,7 +4,7 @@
 mod support;
 
 use simgap_effects::Placed;
-use simgap_estimate::{Fit, Weights, fit};
+use simgap_estimate::{Fit, FitOptions, fit};
 use simgap_model::Location;
 use support::{DAMPER, OSCILLATOR, between, drive, model, noisy, placed, problem, start, truth};
 
@@ -13,10 +13,10 @@ fn close(wanted: f64) -> impl Fn(f64) -> bool {
 }
 
 /// Fits to the last digit: for closed forms, not for a search.
-fn strict() -> Weights {
-    Weights {
+fn strict() -> FitOptions {
+    FitOptions {
         converged: 1e-12,
-        ..Weights::independent(1)
+        ..FitOptions::white(1)
     }
 }
 
@@ -46,7 +46,7 @@ fn verify_intervals_cover_the_truth_as_often_as_they_say() {
     for seed in 0..REALISATIONS {
         let problem = problem(&model, noisy(&clean, 5e-4, 1000 + seed));
         let from = start(oscillator_errors(1.01, 1.01), vec![], &[0.0, 0.0]);
-        let fit = fit(&problem, &from, &Weights::independent(1)).unwrap();
+        let fit = fit(&problem, &from, &FitOptions::white(1)).unwrap();
         let wanted = [true_stiffness, true_damping];
         for (interval, truth) in fit.intervals.iter().map(|i| i[0]).zip(wanted) {
             let std = (interval.ci95[1] - interval.ci95[0]) / (2.0 * 1.959_964);
@@ -80,7 +80,7 @@ fn verify_the_truth_is_recovered_without_noise() {
     let run = truth(&model, &effects, drive(0.01, 400, 6.0), 0.01, &[0.01, -0.2]);
     let problem = problem(&model, run);
     let from = start(oscillator_errors(1.01, 1.01), vec![], &[0.0, 0.0]);
-    let fit = fit(&problem, &from, &Weights::independent(1)).unwrap();
+    let fit = fit(&problem, &from, &FitOptions::white(1)).unwrap();
     for (placed, wanted) in fit.estimate.effects.iter().zip([0.85, 1.6]) {
         assert!(
             (placed.values[0] / wanted - 1.0).abs() < ACCURACY,
@@ -101,8 +101,8 @@ fn damper_fit(noise: f64, prior: f64) -> (Fit, Vec<f64>, Vec<f64>) {
         .unwrap();
     let run = noisy(&truth(&model, &wider, travel, 0.01, &[]), noise, 5);
     let force = run.measured[0].clone().unwrap();
-    let weights = Weights {
-        nominal_prior: prior,
+    let weights = FitOptions {
+        nominal_std: Some(prior),
         ..strict()
     };
     let nominal = placed("damping_error", between("rod", "ground"), &[1.0]);
@@ -154,8 +154,8 @@ fn verify_an_interval_is_the_one_of_linear_regression() {
         5,
     );
     let free = placed("damping_error", between("rod", "ground"), &[1.01]);
-    let weights = Weights {
-        accuracy: 0.0,
+    let weights = FitOptions {
+        floor: vec![0.0],
         ..strict()
     };
     let fit = fit(
@@ -190,7 +190,7 @@ fn verify_friction_is_never_negative() {
     );
     let friction = placed("coulomb_friction", between("block", "ground"), &[0.5]);
     let from = start(vec![friction], vec![], &[0.0, 0.0]);
-    let fit = fit(&problem(&model, run), &from, &Weights::independent(1)).unwrap();
+    let fit = fit(&problem(&model, run), &from, &FitOptions::white(1)).unwrap();
     let interval = fit.intervals[0][0];
     assert_eq!(interval.value, 0.0);
     assert_eq!(interval.ci95[0], 0.0, "nor is the end of its interval");
@@ -212,7 +212,7 @@ fn verify_friction_is_recovered_within_its_interval() {
         vec![],
         &[0.0, 0.0],
     );
-    let fit = fit(&problem(&model, run), &from, &Weights::independent(1)).unwrap();
+    let fit = fit(&problem(&model, run), &from, &FitOptions::white(1)).unwrap();
     let interval = fit.intervals[0][0];
     assert!((interval.value - 1.4).abs() < 0.03, "{interval:?}");
     assert!(
@@ -232,7 +232,7 @@ fn verify_what_the_data_do_not_see_has_no_finite_interval() {
     let unseen = placed("stiffness_error", between("far", "ground"), &[1.3]);
     let push = placed("constant_force", Location::Mass("far".into()), &[0.2]);
     let from = start(vec![seen, unseen, push], vec![], &[0.0; 4]);
-    let fit = fit(&problem, &from, &Weights::independent(1)).unwrap();
+    let fit = fit(&problem, &from, &FitOptions::white(1)).unwrap();
     assert!(fit.intervals[0][0].ci95.iter().all(|end| end.is_finite()));
     let stiffness = fit.intervals[1][0];
     assert_eq!(
@@ -264,7 +264,7 @@ fn verify_a_direction_the_data_do_not_see_has_an_interval_that_says_nothing() {
     ];
     let fitted = |effects: Vec<Placed>| {
         let from = start(effects, vec![], &[0.0; 2]);
-        fit(&problem, &from, &Weights::independent(1)).unwrap()
+        fit(&problem, &from, &FitOptions::white(1)).unwrap()
     };
     let blind = fitted(effects.clone());
     for interval in blind.intervals.iter().map(|i| i[0]) {

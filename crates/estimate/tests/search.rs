@@ -7,16 +7,16 @@ mod support;
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
-use simgap_estimate::{Fit, Start, Weights, fit, fit_initial_states, linearise_at, score};
+use simgap_estimate::{Fit, Start, FitOptions, fit, fit_initial_states, linearise_at, score};
 use simgap_model::Location;
 use support::{
     OSCILLATOR, between, candidate, drive, model, noisy, placed, problem, scale, start, truth,
 };
 
-fn strict() -> Weights {
-    Weights {
+fn strict() -> FitOptions {
+    FitOptions {
         converged: 1e-12,
-        ..Weights::independent(1)
+        ..FitOptions::white(1)
     }
 }
 
@@ -95,7 +95,7 @@ fn verify_initial_states_are_found_where_motions_part() {
     }
 }
 
-fn baseline(std: f64) -> (simgap_estimate::Problem, Fit, Weights) {
+fn baseline(std: f64) -> (simgap_estimate::Problem, Fit, FitOptions) {
     let model = model(OSCILLATOR);
     let pushed = [placed(
         "constant_force",
@@ -199,7 +199,7 @@ fn verify_the_same_fit_comes_out_to_the_last_bit() {
         fit(
             &problem(&model, run.clone()),
             &from,
-            &Weights::independent(1),
+            &FitOptions::white(1),
         )
         .unwrap()
     };
@@ -249,9 +249,9 @@ fn verify_a_tone_is_followed_long_after_time_zero() {
         run.start_s = start_s;
         let problem = problem(&model, noisy(&run, 1e-6, 3));
         let near = placed("harmonic_force", mass(), &[4.9, 3.21, phase(3.21, 0.5)]);
-        let search = Weights {
+        let search = FitOptions {
             most_steps: 10,
-            ..Weights::independent(1)
+            ..FitOptions::white(1)
         };
         let fitted = fit(&problem, &start(vec![near], vec![], &[0.0; 2]), &search).unwrap();
         let interval = fitted.intervals[0][1];

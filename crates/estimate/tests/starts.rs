@@ -6,7 +6,7 @@ mod support;
 use std::f64::consts::TAU;
 
 use simgap_effects::SiteScale;
-use simgap_estimate::{Start, Weights, fit, fit_initial_states, linearise_at, score, score_shapes};
+use simgap_estimate::{Start, FitOptions, fit, fit_initial_states, linearise_at, score, score_shapes};
 use simgap_model::{Location, Model};
 use simgap_simulate::Run;
 use support::{
@@ -32,7 +32,7 @@ fn verify_a_decay_under_friction_is_found_from_rest() {
     for x0 in [-0.05, 0.02, 0.04] {
         let run = truth(&model, &rubbing, vec![0.0; 600], 0.005, &[x0, 0.0]);
         let run = noisy(&run, 1e-3, 5);
-        let weights = Weights::independent(1);
+        let weights = FitOptions::white(1);
         let fit = fit_initial_states(&problem(&model, run), &rubbing, &weights).unwrap();
         let found = &fit.estimate.initial[0];
         assert!((found[0] - x0).abs() < 2e-4, "{found:?} for {x0}");
@@ -48,10 +48,10 @@ fn verify_a_fit_does_not_keep_sensitivities_of_another_plant() {
     let damped = [placed("viscous_damping", at.clone(), &[0.3])];
     let run = truth(&model, &damped, drive(0.01, 400, 0.2), 0.01, &[0.05, 1.0]);
     let problem = problem(&model, noisy(&run, 1e-5, 3));
-    let search = Weights {
+    let search = FitOptions {
         keep_nuisance: true,
         most_steps: 5,
-        ..Weights::independent(1)
+        ..FitOptions::white(1)
     };
     let nominal = ["mass_error", "stiffness_error"].map(|kind| {
         let at = match kind {
@@ -82,7 +82,7 @@ fn verify_an_offset_beside_a_sag_has_a_score() {
     // At rest it hangs ten metres down.
     let run = truth(&model, &bias, drive(0.01, 400, 0.5), 0.01, &[-10.0, 0.0]);
     let problem = problem(&model, noisy(&run, 1e-5, 3));
-    let weights = Weights::independent(1);
+    let weights = FitOptions::white(1);
     let soft = placed("stiffness_error", between("block", "ground"), &[1.0]);
     let heavy = placed("mass_error", Location::Mass("block".into()), &[1.0]);
     let from = start(vec![], vec![soft, heavy], &[-10.0, 0.0]);
@@ -105,9 +105,9 @@ fn verify_what_a_free_parameter_explains_is_no_gain() {
     let stiff = placed("stiffness_error", at.clone(), &[1.01]);
     let run = truth(&model, &[stiff], drive(0.01, 400, 6.0), 0.01, &[0.0; 2]);
     let problem = problem(&model, noisy(&run, 1e-5, 3));
-    let as_given = Weights {
+    let as_given = FitOptions {
         most_steps: 0,
-        ..Weights::independent(1)
+        ..FitOptions::white(1)
     };
     let free = placed("stiffness_error", at.clone(), &[1.0]);
     let spring = candidate("linear_stiffness", at);
@@ -140,7 +140,7 @@ fn verify_a_sweep_finds_a_swinging_stiffness() {
     let force: Vec<f64> = (0..len).map(|_| 30.0 * normal.draw()).collect();
     let run = truth(&model, &swinging, force, step, &[0.0; 2]);
     let problem = problem(&model, noisy(&run, 1e-5, 3));
-    let weights = Weights::independent(1);
+    let weights = FitOptions::white(1);
     let base = fit(&problem, &start(vec![], vec![], &[0.0; 2]), &weights).unwrap();
     let linear = linearise_at(&problem, &base, &weights).unwrap();
     let candidate = candidate("time_varying_stiffness", at);
@@ -198,7 +198,7 @@ fn verify_a_record_is_placed_along_a_travel_that_only_a_wave_shows() {
         let place = between("slide", "ground");
         let values = [WAVE[0] * phase.cos(), WAVE[0] * phase.sin(), WAVE[1]];
         problem.given = vec![placed("position_periodic_force", place, &values)];
-        let fit = fit_initial_states(&problem, &[], &Weights::independent(1)).unwrap();
+        let fit = fit_initial_states(&problem, &[], &FitOptions::white(1)).unwrap();
         let off = fit.estimate.initial[0][0] + phase / TAU * WAVE[1] - BEGIN[1];
         let turns = off / WAVE[1];
         assert!((turns - turns.round()).abs() < 1e-4, "{turns} for {phase}");
@@ -212,7 +212,7 @@ fn verify_a_wave_is_found_where_each_record_begins_elsewhere() {
     let slide = model(SLIDE);
     let mut problem = problem(&slide, along(&slide).swap_remove(0));
     problem.runs = along(&slide);
-    let weights = Weights::independent(1);
+    let weights = FitOptions::white(1);
     let base = fit_initial_states(&problem, &[], &weights).unwrap();
     let linear = linearise_at(&problem, &base, &weights).unwrap();
     let wave = candidate("position_periodic_force", between("slide", "ground"));
@@ -266,7 +266,7 @@ fn verify_a_damped_stop_is_found_through_all_its_blows() {
         ];
         let from = placed("end_stop", at.clone(), &from);
         let from = start(vec![from], vec![], &[0.0; 2]);
-        let found = fit(&problem, &from, &Weights::independent(1)).unwrap();
+        let found = fit(&problem, &from, &FitOptions::white(1)).unwrap();
         let left = found.variance[0] / noise.powi(2);
         assert!((left - 1.0).abs() < 0.1, "{left} from {off}");
         let gap = found.estimate.effects[0].values[0];

@@ -54,7 +54,7 @@ impl Styles {
 /// # Examples
 ///
 /// ```
-/// # use simgap_diagnose::{Diagnosis, Gap, Remains, Status, Verdict, Where};
+/// # use simgap_diagnose::{Diagnosis, Gap, Verdict, Where};
 /// use simgap_report::summary::{Styles, summary_text};
 /// # let diagnosis = Diagnosis {
 /// #     schema: "simgap-diagnosis/1",
@@ -62,8 +62,8 @@ impl Styles {
 /// #     gap: Gap { metric: "nrmse", nominal: 0.021, recalibrated: 0.021, corrected: 0.021,
 /// #         noise_floor: 0.020, input_noise: 0.0, closed: 0.0, channels: vec![] },
 /// #     r#where: Where { channels: vec![], locations: vec![], bands: vec![], times: vec![], states: vec![], records: vec![] },
-/// #     verdict: Verdict { status: Status::None, effects: vec![], description: vec![] },
-/// #     remainder: Remains::default(), candidates: vec![], next_experiment: None, notes: vec![],
+/// #     verdict: Verdict::default(),
+/// #     stopped_early: false, candidates: vec![], next_experiment: None, notes: vec![],
 /// # };
 /// let text = summary_text(&diagnosis, Styles::plain());
 /// assert!(text.starts_with("The gap of 0.0210 is measurement noise; nothing to add to the model.\n"));

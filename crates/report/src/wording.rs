@@ -137,7 +137,7 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
             ratio(gap.nominal)
         ),
         Status::Unknown => format!(
-            "There is structure in the gap of {} that no effect of the catalogue explains; nothing is blamed.",
+            "The main cause of the gap of {} is likelier outside the catalogue than in it; nothing is blamed.",
             ratio(gap.nominal)
         ),
         Status::Parameters if effects.is_empty() => {
@@ -236,24 +236,19 @@ pub(crate) fn particulars(
             format!("{}: {text}", effect_at(&effect.kind, &effect.at))
         }));
     }
-    out.extend(stand_in(diagnosis));
+    out.extend(incomplete(diagnosis));
     out
 }
 
-/// A word of warning where a named effect may only stand in for a law that the catalogue lacks.
-fn stand_in(diagnosis: &Diagnosis) -> Option<String> {
-    let effects = diagnosis.verdict.effects.iter().filter(|e| e.stand_in);
-    let names: Vec<String> = effects.map(|e| kind(&e.kind)).collect();
-    let (they, their) = if names.len() == 1 {
-        ("its name", "its prediction")
-    } else {
-        ("their names", "their prediction")
-    };
-    (!names.is_empty()).then(|| {
-        sentence(&format!(
-            "{} may stand in for a law that the catalogue does not have: trust {their} more than {they}",
-            list(&names)
-        ))
+/// How much an answer leaves, where that is more than noise.
+fn incomplete(diagnosis: &Diagnosis) -> Option<String> {
+    let verdict = &diagnosis.verdict;
+    let named = matches!(verdict.status, Status::Parameters | Status::Effect);
+    (named && !verdict.complete).then(|| {
+        format!(
+            "This is the leading cause, not all of it: {} of the gap is left.",
+            percent(verdict.unexplained.share)
+        )
     })
 }
 

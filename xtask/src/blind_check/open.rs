@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use simgap_blind::{Answer, Named, Score, SealedCase, Signals, Status, Truth, score};
 use simgap_effects::Placed;
-use simgap_estimate::{Problem, Weights, fit_initial_states};
+use simgap_estimate::{Problem, FitOptions, fit_initial_states};
 use simgap_model::{Location, Model};
 use simgap_record::read_csv;
 use simgap_simulate::Run;
@@ -105,7 +105,7 @@ fn best(truth: &Truth, model: &Model, folder: &Path) -> Option<Signals> {
     let record = read_csv(&folder.join(CHECK)).ok()?;
     let run = Run::with_outputs(model, &record).ok()?;
     let problem = Problem::new(model, vec![run]).ok()?;
-    let weights = Weights::independent(model.outputs.len());
+    let weights = FitOptions::white(model.outputs.len());
     let fit = fit_initial_states(&problem, &effects?, &weights).ok()?;
     let runs = problem.runs.iter().zip(&fit.discrepancy);
     let predicted = |(run, rest): (&Run, &Vec<Vec<f64>>)| -> Vec<Vec<f64>> {
@@ -125,6 +125,8 @@ fn answer(reply: &Reply) -> Answer {
     let diagnosis = &reply.diagnosis;
     let verdict = &diagnosis["verdict"];
     let effects = verdict["effects"].as_array();
+    let is_complete = verdict["complete"].as_bool().unwrap_or(true);
+    let named = |effect: &Value| named(effect, is_complete);
     Answer {
         status: match verdict["status"].as_str() {
             Some("parameters") => Status::Parameters,
@@ -139,7 +141,7 @@ fn answer(reply: &Reply) -> Answer {
     }
 }
 
-fn named(effect: &Value) -> Option<Named> {
+fn named(effect: &Value, is_complete: bool) -> Option<Named> {
     let (kind, at) = kind_at(effect)?;
     let rivals = effect["indistinguishable"].as_array();
     Some(Named {
@@ -147,7 +149,7 @@ fn named(effect: &Value) -> Option<Named> {
         at,
         probability: effect["probability"].as_f64().unwrap_or(0.0),
         indistinguishable: rivals.into_iter().flatten().filter_map(kind_at).collect(),
-        stand_in: effect["stand_in"].as_bool().unwrap_or(false),
+        stand_in: !is_complete,
     })
 }
 

@@ -59,10 +59,8 @@ fn answer(args: &WorkerArgs) -> Result<String, Box<dyn std::error::Error + Send 
         .collect::<Result<Vec<Record>, _>>()?;
     let check = [read_csv(&args.folder.join(CHECK))?];
     let request = Request {
-        model: &model,
-        train: &train,
-        check: &check,
         withheld: &args.withhold,
+        ..Request::new(&model, &train, &check)
     };
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let begun = Instant::now();

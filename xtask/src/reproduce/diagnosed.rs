@@ -161,12 +161,7 @@ fn answer(context: &Context, rate_hz: f64, reading: Reading) -> Result<Outcome, 
         Ok(Record::from_uniform(name, 0.0, 1.0 / rate_hz, channels)?)
     };
     let (train, check) = ([record(1)?, record(2)?], [record(3)?]);
-    let request = Request {
-        model: &model(context)?,
-        train: &train,
-        check: &check,
-        withheld: &[],
-    };
+    let request = Request::new(&model(context)?, &train, &check);
     Ok(diagnose(&request, &|_| ())?)
 }
 

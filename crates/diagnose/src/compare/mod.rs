@@ -84,10 +84,8 @@ pub fn compare(
     let withheld: Vec<String> = others.map(|effect| effect.kind().to_string()).collect();
     let judged = diagnose(
         &Request {
-            model: &model,
-            train: std::slice::from_ref(&record),
-            check: &[],
             withheld: &withheld,
+            ..Request::new(&model, std::slice::from_ref(&record), &[])
         },
         progress,
     )?;

@@ -1,5 +1,6 @@
 //! An input drives the plant with another gain than assumed.
 
+use crate::Prior;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
 
@@ -36,11 +37,20 @@ impl Effect for InputGain {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::factor("gain_factor")] }
+        const {
+            &[Parameter {
+                lower: f64::NEG_INFINITY,
+                ..Parameter::factor("gain_factor")
+            }]
+        }
     }
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![1.05]]
+    }
+
+    fn prior(&self, _: usize, _: &SiteScale) -> Prior {
+        Prior::gain()
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -1,5 +1,6 @@
 //! A sensor reads too much or too little in proportion.
 
+use crate::Prior;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
 
@@ -51,6 +52,10 @@ impl Effect for SensorGain {
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![1.05]]
+    }
+
+    fn prior(&self, _: usize, _: &SiteScale) -> Prior {
+        Prior::gain()
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -88,7 +88,7 @@ impl Differentiator {
         Self::CentralFourth,
     ];
 
-    /// Weights (times h) of the formula away from the ends, and the offset of each from n.
+    /// FitOptions (times h) of the formula away from the ends, and the offset of each from n.
     #[must_use]
     pub fn weights(self) -> Vec<(isize, f64)> {
         let backward = |weights: &[f64]| -> Vec<(isize, f64)> {

@@ -134,7 +134,7 @@ pub fn report(input: &ReportInput<'_>) -> Result<Report, ReportError> {
 /// # Examples
 ///
 /// ```
-/// use simgap_diagnose::{Diagnosis, Gap, Remains, Status, Verdict, Where};
+/// use simgap_diagnose::{Diagnosis, Gap, Verdict, Where};
 /// use simgap_report::page::{ReportContext, report_html};
 /// let diagnosis = Diagnosis {
 ///     schema: "simgap-diagnosis/1",
@@ -156,8 +156,8 @@ pub fn report(input: &ReportInput<'_>) -> Result<Report, ReportError> {
 ///         states: vec![],
 ///         records: vec![],
 ///     },
-///     verdict: Verdict { status: Status::None, effects: vec![], description: vec![] },
-///     remainder: Remains::default(),
+///     verdict: Verdict::default(),
+///     stopped_early: false,
 ///     candidates: vec![],
 ///     next_experiment: None,
 ///     notes: vec![],

@@ -18,8 +18,6 @@ const RANKED: usize = 8;
 const FIRST_CANDIDATES: usize = 6;
 /// A corrected gap this many times the noise floor leaves something to explain.
 const STANDS_OUT: f64 = 1.5;
-/// A law of any shape that explains this share of what is left speaks against the law named.
-const ANOTHER_LAW: f64 = 0.3;
 
 /// The whole section.
 pub(super) fn which(
@@ -41,14 +39,15 @@ pub(super) fn which(
         Status::Unknown => html.element(
             "p",
             &[],
-            "None is named: what the catalogue offers leaves too much of the gap to be believed.",
+            "None is named: a cause outside the catalogue is likelier than the best set of the catalogue, which is shown here.",
         ),
         Status::Parameters | Status::Effect => {}
     }
     html.within("div", &[("class", "pair stack")], |html| {
         ranking(html, files, diagnosis)?;
         html.within("div", &[], |html| {
-            for effect in &diagnosis.verdict.effects {
+            let verdict = &diagnosis.verdict;
+            for effect in verdict.effects.iter().chain(&verdict.leading) {
                 for_and_against(html, diagnosis, effect);
             }
             ambiguity(html, diagnosis);
@@ -115,30 +114,17 @@ fn for_and_against(html: &mut Html, diagnosis: &Diagnosis, effect: &NamedEffect)
         percent(effect.probability)
     );
     html.element("h3", &[], &head);
-    let (evidence, doubt) = divided(effect);
-    if !evidence.is_empty() {
+    if !effect.evidence.is_empty() {
         html.element("p", &[("class", "sub")], "For");
-        let evidence: Vec<String> = evidence.iter().map(|line| plain(line)).collect();
+        let evidence: Vec<String> = effect.evidence.iter().map(|line| plain(line)).collect();
         list(html, &evidence);
     }
     html.element("p", &[("class", "sub")], "Against");
-    let doubt = doubt.map(|line| plain(line));
-    let against: Vec<String> = doubt
-        .into_iter()
-        .chain(against(diagnosis, effect))
-        .collect();
+    let against = against(diagnosis, effect);
     if against.is_empty() {
         html.element("p", &[], "Nothing in these records.");
     } else {
         list(html, &against);
-    }
-}
-
-/// What speaks for an effect, and what says that it may only stand in for another law.
-fn divided(effect: &NamedEffect) -> (&[String], Option<&String>) {
-    match effect.evidence.split_last() {
-        Some((doubt, rest)) if effect.stand_in => (rest, Some(doubt)),
-        _ => (&effect.evidence, None),
     }
 }
 
@@ -181,38 +167,38 @@ fn against(diagnosis: &Diagnosis, effect: &NamedEffect) -> Vec<String> {
     out
 }
 
-/// What the best set of effects leaves of the training records, and whether a law of another shape
-/// would explain it.
+/// What the answer leaves of the check records, and whether a law outside the catalogue is likelier.
 fn left_over(html: &mut Html, diagnosis: &Diagnosis) {
-    if diagnosis.verdict.status == Status::None {
+    let verdict = &diagnosis.verdict;
+    if verdict.status == Status::None {
         return;
     }
-    let left = &diagnosis.remainder;
-    html.element("h3", &[], "What is left in the training records");
-    let best = match diagnosis.verdict.status {
-        Status::Unknown => "The best that the catalogue offers",
-        _ => "The answer",
-    };
-    let mut text = if left.over_noise > STANDS_OUT {
-        format!("{best} leaves {} times the noise.", times(left.over_noise))
+    html.element("h3", &[], "What is left");
+    let left = &verdict.unexplained;
+    let mut text = if verdict.complete {
+        "The answer is complete: it leaves no more than noise and the accuracy of the simulation.".to_owned()
     } else {
-        format!("{best} leaves no more than noise.")
+        format!(
+            "The answer is incomplete: {} of the gap is left on the check records.",
+            percent(left.share)
+        )
     };
-    if let Some(at) = left.law_at.as_ref()
-        && left.over_noise > STANDS_OUT
-        && left.law_share > ANOTHER_LAW
-    {
-        let named = diagnosis.verdict.effects.iter().any(|e| &e.at == at);
-        let so = if named {
-            "so the law there may be another than the one named"
-        } else {
-            "so something acts there that is not named"
-        };
+    if !verdict.complete && !left.looks_like.is_empty() {
+        text.push_str(&format!(" {}", sentence(&plain(&left.looks_like))));
+    }
+    text.push_str(&format!(
+        " Probability that the main cause is not in the catalogue: {}.",
+        percent(verdict.other.probability)
+    ));
+    if let (Some(at), Some(closed)) = (&verdict.other.at, verdict.other.closed) {
         text.push_str(&format!(
-            " A law of free shape {} would explain {} of that, {so}.",
+            " A free law {} closes {} of the gap of the training records.",
             place(at),
-            percent(left.law_share)
+            percent(closed)
         ));
+    }
+    if verdict.refuted {
+        text.push_str(" The check records refute it: re-estimated parameters predict them better.");
     }
     html.element("p", &[], &text);
 }

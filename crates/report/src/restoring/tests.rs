@@ -58,8 +58,9 @@ fn diagnosis() -> Diagnosis {
             status: Status::Effect,
             effects: vec![],
             description: vec![],
+            ..Verdict::default()
         },
-        remainder: simgap_diagnose::Remains::default(),
+        stopped_early: false,
         candidates: vec![],
         next_experiment: None,
         notes: vec![],

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use simgap_diagnose::{
     BandShare, CandidateResult, ChannelGap, ChannelSeries, ChannelShare, CheckSeries, Diagnosis,
-    Gap, LocationShare, NamedEffect, NamedParameter, RecordShare, Remains, Rival, StateShare,
+    Gap, LocationShare, NamedEffect, NamedParameter, RecordShare, Rival, StateShare,
     Status, TimeShare, Verdict, Where,
 };
 use simgap_model::Location;
@@ -92,7 +92,7 @@ pub fn series_of(status: Status) -> Vec<CheckSeries> {
 
 pub fn effect() -> Diagnosis {
     Diagnosis {
-        remainder: Remains::default(),
+        stopped_early: false,
         schema: "simgap-diagnosis/1",
         model: "mold-2dof".into(),
         gap: Gap {
@@ -112,6 +112,7 @@ pub fn effect() -> Diagnosis {
             status: Status::Effect,
             effects: vec![friction()],
             description: vec![],
+            ..Verdict::default()
         },
         candidates: candidates(),
         next_experiment: Some("drive the mold with a slow ramp of 1 mm/s through standstill: Coulomb and Stribeck friction differ most there".into()),
@@ -128,7 +129,6 @@ fn friction() -> NamedEffect {
         at: between("mold", "ground"),
         probability: 0.974,
         parameters: vec![NamedParameter { name: "friction_force_n".into(), value: 2104.3, ci95: [2051.0, 2157.6] }],
-        stand_in: false,
         indistinguishable: vec![Rival {
             kind: "stribeck_friction".into(),
             at: between("mold", "ground"),
@@ -255,7 +255,6 @@ pub fn parameters() -> Diagnosis {
             value: 0.9312,
             ci95: [0.9204, 0.9431],
         }],
-        stand_in: false,
         indistinguishable: vec![],
         evidence: vec!["Re-estimating it alone lowers the gap to the noise.".into()],
     }];
@@ -273,6 +272,7 @@ pub fn unknown() -> Diagnosis {
             "what is left of y1 repeats every 2.50 s whatever the motion does".into(),
             "it is largest where the mold is near 1.2 mm".into(),
         ],
+        ..Verdict::default()
     };
     d.gap.corrected = 0.301;
     d.gap.closed = 0.271;
@@ -285,6 +285,7 @@ pub fn none() -> Diagnosis {
         status: Status::None,
         effects: vec![],
         description: vec![],
+        ..Verdict::default()
     };
     d.gap = Gap {
         metric: "nrmse",
@@ -318,7 +319,6 @@ pub fn two_effects() -> Diagnosis {
             value: -1.2e-4,
             ci95: [f64::NEG_INFINITY, f64::INFINITY],
         }],
-        stand_in: false,
         indistinguishable: vec![],
         evidence: vec![],
     });

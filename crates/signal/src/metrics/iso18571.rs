@@ -19,7 +19,7 @@ const WARP_BAND: f64 = 0.10;
 const MAX_SLOPE_ERROR: f64 = 2.0;
 /// Samples of the moving average of the slope.
 const SLOPE_AVERAGE: usize = 9;
-/// Weights of corridor, phase, magnitude and slope.
+/// FitOptions of corridor, phase, magnitude and slope.
 const WEIGHTS: [f64; 4] = [0.4, 0.2, 0.2, 0.2];
 /// A correlation must exceed that of a smaller shift by this to count as larger: rounding of the
 /// transforms, far below the step of a real maximum.

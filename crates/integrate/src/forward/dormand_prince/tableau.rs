@@ -11,7 +11,7 @@ pub(super) const STAGES: usize = 7;
 pub(super) const NODES: [f64; STAGES] =
     [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0];
 
-/// Weights a of the stages; the last row is the solution of order five.
+/// FitOptions a of the stages; the last row is the solution of order five.
 pub(super) const STAGE_WEIGHTS: [[f64; STAGES - 1]; STAGES] = [
     [0.0; 6],
     [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -43,7 +43,7 @@ pub(super) const STAGE_WEIGHTS: [[f64; STAGES - 1]; STAGES] = [
     ],
 ];
 
-/// Weights of the solution of order five less those of order four.
+/// FitOptions of the solution of order five less those of order four.
 pub(super) const ERROR_WEIGHTS: [f64; STAGES] = [
     71.0 / 57600.0,
     0.0,
@@ -54,7 +54,7 @@ pub(super) const ERROR_WEIGHTS: [f64; STAGES] = [
     -1.0 / 40.0,
 ];
 
-/// Weights of the last term of the continuous extension.
+/// FitOptions of the last term of the continuous extension.
 const EXTENSION_WEIGHTS: [f64; STAGES] = [
     -12_715_105_075.0 / 11_282_082_432.0,
     0.0,
@@ -65,7 +65,7 @@ const EXTENSION_WEIGHTS: [f64; STAGES] = [
     69_997_945.0 / 29_380_423.0,
 ];
 
-/// Weights b(θ) of the stages at the fraction θ of a step:
+/// FitOptions b(θ) of the stages at the fraction θ of a step:
 ///
 /// ```text
 /// y(t + θh) = y + h Σ b_i(θ) k_i
@@ -93,23 +93,23 @@ mod tests {
     /// Rounding of sums of terms up to 12 in size.
     const ROUNDING: f64 = 2e-14;
 
-    type Weights = [f64; STAGES];
+    type FitOptions = [f64; STAGES];
 
-    fn solution() -> Weights {
+    fn solution() -> FitOptions {
         std::array::from_fn(|i| if i < 6 { STAGE_WEIGHTS[6][i] } else { 0.0 })
     }
 
     /// (A u)_i.
-    fn stages(u: Weights) -> Weights {
+    fn stages(u: FitOptions) -> FitOptions {
         std::array::from_fn(|i| (0..6).map(|j| STAGE_WEIGHTS[i][j] * u[j]).sum())
     }
 
-    fn times(u: Weights, v: Weights) -> Weights {
+    fn times(u: FitOptions, v: FitOptions) -> FitOptions {
         std::array::from_fn(|i| u[i] * v[i])
     }
 
     /// The elementary weights of all rooted trees up to order five with 1/γ of each.
-    fn trees() -> Vec<(usize, Weights, f64)> {
+    fn trees() -> Vec<(usize, FitOptions, f64)> {
         let one = [1.0; STAGES];
         let c = NODES;
         let c2 = times(c, c);
@@ -137,7 +137,7 @@ mod tests {
         ]
     }
 
-    fn weigh(b: &Weights, tree: &Weights) -> f64 {
+    fn weigh(b: &FitOptions, tree: &FitOptions) -> f64 {
         b.iter().zip(tree).map(|(x, y)| x * y).sum()
     }
 
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn verify_embedded_solution_is_of_order_four_and_no_more() {
         let b = solution();
-        let embedded: Weights = std::array::from_fn(|i| b[i] - ERROR_WEIGHTS[i]);
+        let embedded: FitOptions = std::array::from_fn(|i| b[i] - ERROR_WEIGHTS[i]);
         let mut worst_of_order_five = 0.0_f64;
         for (order, tree, weight) in trees() {
             let error = (weigh(&embedded, &tree) - weight).abs();

@@ -14,11 +14,11 @@
 //! walk, and one walk is not like another.
 
 use simgap_effects::Placed;
-use simgap_estimate::{EstimateError, Problem, Weights, fit_initial_states};
+use simgap_estimate::{EstimateError, Problem, FitOptions, fit_initial_states};
 use simgap_signal::noise::{fall_of_spectrum, white_noise_std};
 use simgap_simulate::Run;
 
-use crate::evidence::is_nominal;
+use crate::is_nominal;
 
 /// Largest noise of an input, over its standard deviation: what is more is broadband excitation.
 const MOST: f64 = 0.05;
@@ -32,7 +32,7 @@ const DRAWS: u64 = 6;
 
 /// What the noise of the inputs does to a channel, in its unit squared.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct InputNoise {
+pub struct InputNoise {
     /// Mean of r².
     variance: f64,
     /// The same of the largest r drawn.
@@ -43,12 +43,14 @@ pub(crate) struct InputNoise {
 
 impl InputNoise {
     /// Root mean square of r.
-    pub(crate) fn rms(&self) -> f64 {
+    #[must_use]
+    pub fn rms(&self) -> f64 {
         self.variance.sqrt()
     }
 
     /// ε² by (2) beside white noise of a variance that was found on what a set leaves.
-    pub(crate) fn beyond(&self, found: f64) -> f64 {
+    #[must_use]
+    pub fn beyond(&self, found: f64) -> f64 {
         (self.most - self.white.min(found)).max(0.0)
     }
 }
@@ -56,10 +58,13 @@ impl InputNoise {
 /// r of each channel by (1) for a model that is driven by the runs of a problem, with the nominal parameters among
 /// `placed` as they were estimated beside the rest of it: a set without the cause bends them. Where excitation hides
 /// the noise of an input, it has the least that is seen in another run, of the problem or of `others`.
-pub(crate) fn input_noise(
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn input_noise(
     problem: &Problem,
     placed: &[Placed],
-    weights: &Weights,
+    weights: &FitOptions,
     others: &[Run],
 ) -> Result<Vec<InputNoise>, EstimateError> {
     let nothing = vec![0.0; problem.model.outputs.len()];
@@ -92,18 +97,18 @@ pub(crate) fn input_noise(
 }
 
 /// What draws of noise on the inputs do to the outputs of a run.
-pub(crate) struct Drawn {
+pub(super) struct Drawn {
     /// r of (1), by draw and channel.
-    pub(crate) left: Vec<Vec<Vec<f64>>>,
+    pub(super) left: Vec<Vec<Vec<f64>>>,
     /// Variance of the white noise that is seen in each channel.
     white: Vec<f64>,
 }
 
-/// The draws for every run whose inputs have noise, as told for [`input_noise`].
-pub(crate) fn draws(
+/// The draws for every run whose inputs have noise, as told for `input_noise`.
+pub(super) fn draws(
     problem: &Problem,
     placed: &[Placed],
-    weights: &Weights,
+    weights: &FitOptions,
     others: &[Run],
 ) -> Result<Vec<Drawn>, EstimateError> {
     let parameters: Vec<Placed> = placed.iter().filter(|p| is_nominal(p)).cloned().collect();
@@ -196,7 +201,7 @@ fn least_seen(seen: &[Vec<Seen>], input: usize) -> Option<f64> {
     stds.min_by(f64::total_cmp)
 }
 
-pub(crate) fn square_sum(values: &[f64]) -> f64 {
+pub(super) fn square_sum(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
@@ -251,7 +256,7 @@ mod tests {
     fn driven(output: &str, input: Vec<f64>, others: &[Run]) -> InputNoise {
         let model = Model::from_toml(&TEXT.replace("displacement", output)).unwrap();
         let problem = Problem::new(&model, vec![run(input)]).unwrap();
-        let weights = Weights::independent(1);
+        let weights = FitOptions::white(1);
         input_noise(&problem, &[], &weights, others).unwrap()[0]
     }
 

@@ -1,18 +1,17 @@
-//! Effects fitted from afar.
+//! Effects at many values, spread over two decades about their usual ones.
 //!
 //! Where no single effect explains a gap, nor a pair, it may be that the right one was fitted from the wrong side of
 //! a ridge, or from a size at which it does something else. Effects of the machine are then simulated at
-//! many values, spread over two decades about their starting values, and fitted from the best of them; a clock that
-//! leaves no line is swept over its range.
+//! many values and fitted from the best of them; a clock that leaves no line is swept over its range.
 
 use rayon::prelude::*;
 use simgap_effects::{Effect, SiteScale};
 use simgap_estimate::{
-    Base, Candidate, EstimateError, Score, Start, Weights, fit, fit_initial_states, linearise_at,
+    Base, Candidate, EstimateError, FitOptions, Score, Start, fit, fit_initial_states, linearise_at,
     score_outright, score_shapes,
 };
 
-use crate::hypothesis::{Hypothesis, add_scored, is_bent, name, sort, straight};
+use crate::candidate_model::{CandidateModel, add_scored, is_bent, name, rank, straight};
 use crate::search::Search;
 
 /// Values tried of each effect at each place.
@@ -35,12 +34,12 @@ const PRIMES: [usize; 6] = [2, 3, 5, 7, 11, 13];
 
 impl Search<'_> {
     /// Every effect of the machine beside those of `base`, fitted from the best of many values. Best first.
-    pub(crate) fn fit_from_afar(
+    pub(crate) fn multistart(
         &self,
-        base: &Hypothesis,
+        base: &CandidateModel,
         linear: &Base<'_>,
-    ) -> Result<Vec<Hypothesis>, EstimateError> {
-        let candidates = self.candidates.par_iter();
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        let candidates = self.space.candidates.par_iter();
         let free = candidates.filter(|(candidate, _)| !base.rules_out(candidate));
         let scored = free.map(|(candidate, scale)| {
             let effect = candidate.effect;
@@ -75,39 +74,39 @@ impl Search<'_> {
             .into_iter()
             .map(|score| add_scored(&base.fit.estimate, score.clone()))
             .collect();
-        let mut fitted = self.fit_all(&starts, linear)?;
+        let mut fitted = self.fit_all(&starts, linear);
         let promising: Vec<Start> = fitted
             .drain(..fitted.len().min(FINISHED))
             .map(|set| set.fit.estimate)
             .collect();
-        fitted.extend(self.fit_steps(&promising, linear, STEPS)?);
-        sort(&mut fitted);
+        fitted.extend(self.fit_steps(&promising, linear, STEPS));
+        rank(&mut fitted);
         Ok(fitted)
     }
 
     /// Single effects, fitted from nominal parameters as given where a large gap has bent those of `base`.
     pub(crate) fn fit_from_given(
         &self,
-        base: &Hypothesis,
+        base: &CandidateModel,
         most: usize,
-    ) -> Result<Vec<Hypothesis>, EstimateError> {
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
         if !is_bent(base) {
             return Ok(vec![]);
         }
-        let as_given = fit_initial_states(self.problem, &[], &self.weights)?;
+        let as_given = fit_initial_states(self.problem, &[], &self.options)?;
         let start = Start {
             effects: vec![],
             nominal: straight(base),
             initial: as_given.estimate.initial,
         };
-        let held = Weights {
+        let held = FitOptions {
             most_steps: 0,
-            ..self.weights.clone()
+            ..self.options.clone()
         };
-        let given = self.hypothesis(fit(self.problem, &start, &held)?);
-        let linear = linearise_at(self.problem, &given.fit, &self.weights)?;
+        let given = self.candidate_model(fit(self.problem, &start, &held)?);
+        let linear = linearise_at(self.problem, &given.fit, &self.options)?;
         let mut fitted = self.extend_at(&given, &linear, most)?;
-        fitted.extend(self.fit_from_afar(&given, &linear)?);
+        fitted.extend(self.multistart(&given, &linear)?);
         Ok(fitted)
     }
 }

@@ -1,4 +1,4 @@
-//! Plants that noise of the inputs leads away.
+//! Input noise integrated by a plant with a rigid-body mode.
 //!
 //! A slide without a spring integrates the noise of its drive: over a record the true model parts from the machine by many
 //! times what the sensor adds, and a spring that does not exist or a mass that is wrong keeps it nearer. There the residuals
@@ -7,11 +7,11 @@
 //! sensors; not from the discrepancy, which holds the effect. Where a converter's steps are coarse, what it rounds away is no noise
 //! that a filter could know.
 
-use simgap_estimate::{EstimateError, Fit, Problem, Weights, Whitening};
+use simgap_estimate::{EstimateError, Fit, Problem, FitOptions, Whitening};
 use simgap_simulate::Run;
 
-use crate::gap::noise_variance;
-use crate::input_noise::{draws, square_sum};
+use super::input_noise::{draws, square_sum};
+use super::sensor::noise_variance;
 
 /// A channel wanders that the noise of the inputs moves by more than this multiple of what its sensor adds, rms, and by more
 /// than this share of its motion.
@@ -28,11 +28,14 @@ const LONG: usize = 32;
 /// The filters of a problem in which some channel wanders, from what the noise of its inputs does and what the fit of the model
 /// as given leaves of white noise; `None` where none does, where a channel is stored in coarse steps, and where runs of the
 /// problem or those that it is to be judged by (`check`) are short or of several sample rates.
-pub(crate) fn whitening(
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn whitening(
     problem: &Problem,
     check: &[Run],
     fit: &Fit,
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Option<Whitening>, EstimateError> {
     let channels = 0..problem.model.outputs.len();
     let mut runs = problem.runs.iter().chain(check);
@@ -110,7 +113,7 @@ mod tests {
     fn is_filtered(run: impl Fn(&Model) -> Run, check: impl Fn(&Model) -> Run) -> bool {
         let model = Model::from_toml(SLIDE).unwrap();
         let problem = Problem::new(&model, vec![run(&model)]).unwrap();
-        let weights = Weights::independent(1);
+        let weights = FitOptions::white(1);
         let fit = fit_initial_states(&problem, &[], &weights).unwrap();
         let found = whitening(&problem, &[check(&model)], &fit, &weights).unwrap();
         found.is_some_and(|filters| filters.order(0) == ORDER)

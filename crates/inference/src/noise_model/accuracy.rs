@@ -13,19 +13,17 @@ use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, Problem};
 use simgap_simulate::Run;
 
-use crate::gap::total;
-
 /// Bounds of δ over the standard deviation of a channel: there is more to a simulation than its inputs, and a
 /// coarse input is no leave to overlook everything.
 const BOUNDS: [f64; 2] = [2e-4, 1.5e-3];
 /// How many times less a curve through samples at half the distance misses, of an input with steps and of a smooth one.
 const RATIOS: [f64; 2] = [2.0, 16.0];
 
-/// Largest δ of a record by which a set is judged, over the standard deviation of a channel.
-const MOST_OF_CHECK: f64 = 0.02;
-
-/// δ_c of each channel, in its unit, for the model of a fit; within [`BOUNDS`] of the standard deviations.
-pub(crate) fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError> {
+/// δ_c of each channel, in its unit, for the model of a fit; within the bounds of the standard deviations.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError> {
     let estimate = &fit.estimate;
     let delta = between_samples(problem, &estimate.nominal, &estimate.initial)?;
     let [least, most] = BOUNDS;
@@ -43,22 +41,6 @@ pub(crate) fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, Estimat
         false => most * std,
     };
     Ok(delta.zip(std).map(bounded).collect())
-}
-
-/// δ over the motion, of all channels together, on records by which a set is judged: their inputs may be sampled worse
-/// than those that it was fitted to.
-pub(crate) fn accuracy_of_check(
-    check: &Problem,
-    placed: &[Placed],
-    initial: &[Vec<f64>],
-) -> Result<f64, EstimateError> {
-    let delta = between_samples(check, placed, initial)?;
-    let shares = delta.iter().zip(check.output_std());
-    let shares: Vec<f64> = shares
-        .map(|(delta, std)| (delta / std).min(MOST_OF_CHECK))
-        .map(|share| if share.is_finite() { share } else { 0.0 })
-        .collect();
-    Ok(total(&shares))
 }
 
 /// δ_c by (1) for a model from given states.
@@ -100,7 +82,7 @@ fn between_samples(
 }
 
 /// Sum of the squared differences of two signals.
-pub(crate) fn squared_distance(one: &[f64], other: &[f64]) -> f64 {
+fn squared_distance(one: &[f64], other: &[f64]) -> f64 {
     let apart = one.iter().zip(other).map(|(a, b)| (a - b).powi(2));
     apart.sum()
 }

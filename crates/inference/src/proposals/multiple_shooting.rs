@@ -10,16 +10,16 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use simgap_effects::Placed;
+use simgap_effects::{Family, Placed};
 use simgap_estimate::{
-    Candidate, EstimateError, Fit, Problem, Start, Weights, fit, fit_initial_states_from,
+    Candidate, EstimateError, Fit, Problem, Start, FitOptions, fit, fit_initial_states_from,
     linearise_at,
 };
 use simgap_model::Location;
 
-use crate::hypothesis::{Hypothesis, rank, sort, straight};
+use crate::candidate_model::{CandidateModel, rank, straight};
+use crate::model_space::ModelSpace;
 use crate::search::Search;
-use crate::stretches::bounds;
 
 /// Laws fitted to stretches, by score, and sets that are fitted to whole records then.
 const FITTED: usize = 12;
@@ -34,18 +34,18 @@ const STEPS: usize = 80;
 
 impl Search<'_> {
     /// Single laws fitted to stretches of the records, to longer ones, and then to whole records. Best first.
-    pub(crate) fn fit_by_shooting(
+    pub(crate) fn multiple_shooting(
         &self,
-        base: &Hypothesis,
-    ) -> Result<Vec<Hypothesis>, EstimateError> {
+        base: &CandidateModel,
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
         let mut cut = Cut::of(self.problem);
         let is_law = |candidate: &Candidate| candidate.effect.family().is_law();
-        if cut.is_whole() || !self.candidates.iter().any(|(known, _)| is_law(known)) {
+        if cut.is_whole() || !self.space.candidates.iter().any(|(known, _)| is_law(known)) {
             return Ok(vec![]);
         }
-        let weights = Weights {
+        let weights = FitOptions {
             most_steps: STEPS,
-            ..self.weights.clone()
+            ..self.options.clone()
         };
         let mut found = self.fit_to_stretches(base, &cut)?;
         loop {
@@ -58,9 +58,9 @@ impl Search<'_> {
             });
             let fits: Vec<Fit> = fits.collect();
             if longer.is_whole() {
-                let sets = fits.into_iter().map(|fit| self.hypothesis(fit));
-                let mut sets: Vec<_> = sets.filter(|set| self.is_hypothesis(set)).collect();
-                sort(&mut sets);
+                let sets = fits.into_iter().map(|fit| self.candidate_model(fit));
+                let mut sets: Vec<CandidateModel> = sets.collect();
+                rank(&mut sets);
                 return Ok(sets);
             }
             found = fits.into_iter().map(|fit| fit.estimate).collect();
@@ -69,40 +69,32 @@ impl Search<'_> {
     }
 
     /// The best single laws, each stretch with an initial state of its own.
-    fn fit_to_stretches(&self, base: &Hypothesis, cut: &Cut) -> Result<Vec<Start>, EstimateError> {
+    fn fit_to_stretches(&self, base: &CandidateModel, cut: &Cut) -> Result<Vec<Start>, EstimateError> {
         let problem = cut.apply(self.problem);
         let nominal = &straight(base);
-        let initial = begin(&problem, cut, nominal, &self.weights)?;
-        let mut begun = fit_initial_states_from(&problem, nominal, initial, &self.weights)?;
+        let initial = begin(&problem, cut, nominal, &self.options)?;
+        let mut begun = fit_initial_states_from(&problem, nominal, initial, &self.options)?;
         begun.estimate.nominal.clone_from(nominal);
-        let search = self.for_laws_in(&problem, &begun)?;
+        let search = Search {
+            problem: &problem,
+            options: self.options.clone(),
+            space: self.laws_in(&problem, &begun)?,
+            nominal: self.nominal,
+            budget: self.budget,
+        };
         let begun = search.fit(&begun.estimate)?;
-        let linear = linearise_at(&problem, &begun.fit, &search.weights)?;
+        let linear = linearise_at(&problem, &begun.fit, &search.options)?;
         let mut found = search.extend_at(&begun, &linear, FITTED)?;
-        found.extend(search.fit_from_afar(&begun, &linear)?);
+        found.extend(search.multistart(&begun, &linear)?);
         rank(&mut found);
         found.truncate(FINISHED);
         Ok(found.into_iter().map(|set| set.fit.estimate).collect())
     }
 
-    /// The search for laws in other runs of the same records, with what is typical of the motion of a fit.
-    fn for_laws_in<'b>(
-        &self,
-        problem: &'b Problem,
-        fit: &Fit,
-    ) -> Result<Search<'b>, EstimateError> {
-        let laws = self.candidates.iter().map(|(candidate, _)| candidate);
-        let laws = laws.filter(|candidate| candidate.effect.family().is_law());
-        let sized = laws.map(|law| Ok((law.clone(), problem.site_scale(fit, &law.at)?)));
-        Ok(Search {
-            problem,
-            weights: self.weights.clone(),
-            candidates: sized.collect::<Result<_, EstimateError>>()?,
-            effective_samples: self.effective_samples,
-            gap: self.gap.clone(),
-            accuracy: self.accuracy.clone(),
-            input_noise: self.input_noise.clone(),
-        })
+    /// The laws of the machine, with what is typical of the motion of a fit of other runs of the same records.
+    fn laws_in(&self, problem: &Problem, fit: &Fit) -> Result<ModelSpace, EstimateError> {
+        let laws = self.space.of_families(Family::is_law).candidates;
+        ModelSpace::of(problem, fit, laws.into_iter().map(|(law, _)| law))
     }
 }
 
@@ -171,7 +163,7 @@ fn begin(
     cut: &Problem,
     stretches: &Cut,
     nominal: &[Placed],
-    weights: &Weights,
+    weights: &FitOptions,
 ) -> Result<Vec<Vec<f64>>, EstimateError> {
     let guess = cut.initial_guess();
     let mut states: Vec<Vec<f64>> = Vec::with_capacity(cut.runs.len());
@@ -207,6 +199,13 @@ fn end(alone: &Problem, nominal: &[Placed], initial: &[f64]) -> Result<Vec<f64>,
     let ends = ends.collect::<Result<Vec<[f64; 2]>, EstimateError>>()?;
     let part = |i: usize| ends.iter().map(move |end| end[i]);
     Ok(part(0).chain(part(1)).collect())
+}
+
+/// The samples of each stretch of a record, of `shortest` or more and `most` stretches or fewer.
+fn bounds(len: usize, shortest: usize, most: usize) -> Vec<Range<usize>> {
+    let count = (len / shortest).clamp(1, most);
+    let bound = |k: usize| k * len / count;
+    (0..count).map(|k| bound(k)..bound(k + 1)).collect()
 }
 
 #[cfg(test)]

@@ -1,0 +1,117 @@
+//! What is answered, from the posterior over sets and from nothing else.
+
+use simgap_effects::Placed;
+use simgap_estimate::Start;
+use simgap_inference::noise_model::{noise_variance, stepped};
+use simgap_inference::{
+    CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, Search, model_posterior,
+    name, other,
+};
+
+use crate::pipeline::{Prepared, are_parameters};
+use crate::{DiagnoseError, Status};
+
+/// The status is `unknown` where another cause is likelier than this.
+const LIKELIER_THAN_NOT: f64 = 0.5;
+
+/// What the training records say.
+pub(crate) struct Decision {
+    pub(crate) status: Status,
+    /// The sets that hold an effect of any kind, or none.
+    pub(crate) posterior: ModelPosterior,
+    /// The effects of the best set.
+    pub(crate) effects: Vec<EffectPosterior>,
+    /// The law that the catalogue may lack.
+    pub(crate) other: Other,
+    /// Where the final fit starts.
+    start: Start,
+}
+
+impl Decision {
+    /// Where the final fit starts: the best set; for `unknown` the free law where that leaves less than re-estimated parameters.
+    pub(crate) fn start(&self) -> &Start {
+        &self.start
+    }
+}
+
+/// Decides between the sets of a pool. `first` holds no effect and every nominal parameter at its value.
+pub(crate) fn decide(
+    search: &Search<'_>,
+    pool: Vec<CandidateModel>,
+    first: &Start,
+    prepared: &Prepared,
+) -> Result<Decision, DiagnoseError> {
+    let problem = search.problem;
+    let std = problem.output_std();
+    let given = prepared.nominal.variance.iter().zip(&std);
+    let square: Vec<f64> = given.map(|(given, std)| given.min(std * std)).collect();
+    let rms: Vec<f64> = square.iter().map(|square| square.sqrt()).collect();
+    let base = match pool.iter().find(|set| set.effects().is_empty()) {
+        Some(base) => base.clone(),
+        None => search.fit(first)?,
+    };
+    let posterior = model_posterior(search, pool, &rms)?;
+    let best = posterior.best().unwrap_or(&base).clone();
+    let noise = noise_variance(&best.fit.discrepancy, &stepped(problem, best.effects()));
+    let floor = search.options.floor.iter().zip(&std);
+    let noise = noise.iter().zip(floor);
+    let gap = Gap {
+        noise: noise.map(|(noise, (floor, std))| noise + (floor * std).powi(2)).collect(),
+        square,
+        std,
+    };
+    let other = other(search, &base, &best, &gap)?;
+    let mut decision = Decision {
+        status: Status::None,
+        effects: posterior.effects.clone(),
+        posterior,
+        start: best.fit.estimate.clone(),
+        other,
+    };
+    if decision.other.probability > LIKELIER_THAN_NOT {
+        decision.status = Status::Unknown;
+        let of_parameters = gap.left(&base.fit.variance);
+        decision.start = match &decision.other.law {
+            Some(law) if law.left < of_parameters => law.fit.estimate.clone(),
+            _ => base.fit.estimate.clone(),
+        };
+    } else if best.effects().is_empty() {
+        small_errors(search, first, &rms, &mut decision)?;
+    } else if are_parameters(best.effects().iter()) {
+        decision.status = Status::Parameters;
+    } else {
+        decision.status = Status::Effect;
+    }
+    Ok(decision)
+}
+
+/// Where nothing is wrong: which nominal parameters are seen to be off within what the model states of them.
+fn small_errors(
+    search: &Search<'_>,
+    first: &Start,
+    gap: &[f64],
+    decision: &mut Decision,
+) -> Result<(), DiagnoseError> {
+    let stated: Vec<f64> = first.nominal.iter().map(|p| search.problem.stated_std(p)).collect();
+    let widest = stated.iter().copied().fold(0.0, f64::max);
+    let parameters = search.of_stated_parameters(widest);
+    let exact = parameters.fit(&Start {
+        nominal: vec![],
+        ..first.clone()
+    })?;
+    let mut pool = parameters.run(&exact)?;
+    parameters.refine(&mut pool)?;
+    let posterior = model_posterior(&parameters, pool, gap)?;
+    let Some(best) = posterior.best().filter(|best| !best.effects().is_empty()) else {
+        return Ok(());
+    };
+    decision.status = Status::Parameters;
+    decision.effects = posterior.effects.clone();
+    decision.start = best.fit.estimate.clone();
+    // The others are adjusted again.
+    let named: Vec<String> = best.effects().iter().map(name).collect();
+    let others = first.nominal.iter().filter(|p| !named.contains(&name(p)));
+    decision.start.nominal = others.cloned().collect::<Vec<Placed>>();
+    Ok(())
+}
+

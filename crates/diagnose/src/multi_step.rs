@@ -1,0 +1,68 @@
+//! Predictions of several steps from what was measured.
+//!
+//! With play, sticking and stops a motion may depend on differences that no estimate resolves: over a whole record
+//! the true model departs from the machine. Started anew in every stretch from what was measured it follows for a while;
+//! a wrong law does not.
+
+use std::ops::Range;
+
+use simgap_effects::Placed;
+use simgap_estimate::{EstimateError, FitOptions, Problem};
+use simgap_simulate::Run;
+
+use crate::gap::{predict, total};
+
+/// Stretches that a check record is cut into at the most, and samples of each at the least.
+const MOST_STRETCHES: usize = 20;
+const SHORTEST: usize = 128;
+
+/// Whether a corrected model predicts stretches of the check records worse than re-estimated parameters do, each from an
+/// initial state of its own.
+pub(crate) fn contradicts(
+    check: &Problem,
+    recalibrated: &[Placed],
+    corrected: &[Placed],
+    options: &FitOptions,
+) -> Result<bool, EstimateError> {
+    let cut = check.with_runs(check.runs.iter().flat_map(stretches).collect());
+    let left = |placed: &[Placed]| -> Result<f64, EstimateError> {
+        Ok(total(&predict(&cut, placed, options)?.nrmse))
+    };
+    Ok(left(corrected)? > left(recalibrated)?)
+}
+
+fn stretches(run: &Run) -> impl Iterator<Item = Run> + '_ {
+    let bounds = bounds(run.len, SHORTEST, MOST_STRETCHES).into_iter();
+    bounds.map(|samples| run.slice(samples))
+}
+
+/// The samples of each stretch of a record, of `shortest` or more and `most` stretches or fewer.
+fn bounds(len: usize, shortest: usize, most: usize) -> Vec<Range<usize>> {
+    let count = (len / shortest).clamp(1, most);
+    let bound = |k: usize| k * len / count;
+    (0..count).map(|k| bound(k)..bound(k + 1)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_cover_a_run_and_are_not_short() {
+        for (len, count) in [(0, 1), (127, 1), (255, 1), (256, 2), (1210, 9), (90_000, 20)] {
+            let run = Run {
+                name: "a".into(),
+                start_s: 2.0,
+                time_step_s: 0.5,
+                len,
+                first_index: 7,
+                inputs: vec![vec![1.0; len]],
+                measured: vec![None],
+            };
+            let cut: Vec<Run> = stretches(&run).collect();
+            assert_eq!(cut.len(), count, "{len}");
+            assert_eq!(cut.iter().map(|part| part.len).sum::<usize>(), len);
+            assert!(len < SHORTEST || cut.iter().all(|part| part.len >= SHORTEST));
+        }
+    }
+}

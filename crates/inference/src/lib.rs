@@ -1,0 +1,29 @@
+//! Which sets of effects explain records: proposals, one log marginal likelihood, one posterior.
+//!
+//! ```text
+//! nominal model, records -> noise model (once)                         noise_model
+//! catalogue x places     -> sets and their prior                       model_space
+//! proposals of sets      -> fits; a search with budgets                proposals, search
+//! ln Z + ln p of each    -> computed once, never changed               marginal_likelihood
+//! posterior over sets    -> effects, classes, relevance                model_posterior
+//! a law of any shape     -> the probability of another cause           other
+//! ```
+//!
+//! No stage calls an earlier one. The search may miss a set; it does not judge one. Nothing here knows an effect by name
+//! or what is reported of it.
+
+mod candidate_model;
+mod marginal_likelihood;
+mod model_posterior;
+mod model_space;
+pub mod noise_model;
+mod other;
+mod proposals;
+mod search;
+
+pub use candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
+pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterior};
+pub use model_space::ModelSpace;
+pub use noise_model::NoiseModel;
+pub use other::{FreeLaw, Gap, Other, other};
+pub use search::{Budget, Search};

@@ -1,0 +1,226 @@
+//! The posterior over all sets that were fitted.
+//!
+//! ```text
+//! p(S | y) = p(S) Z(S) / Σ p(S') Z(S')                                     (1)
+//! p(effect | y) = Σ p(S | y) over the sets that hold it or one that cannot be told from it     (2)
+//! ```
+//!
+//! A set is a candidate only if each of its effects closes a share of the gap that is worth a name (*practical
+//! relevance*): what closes less belongs to the smaller set. Effects that can be exchanged within the stated odds cannot
+//! be told apart.
+
+use simgap_effects::{Equivalent, Placed, same_place};
+use simgap_estimate::EstimateError;
+
+use crate::candidate_model::{CandidateModel, name, rank, remove};
+use crate::search::Search;
+
+/// Practical relevance: the share of the gap, rms, below which an effect is not worth a name.
+const RELEVANT: f64 = 0.03;
+/// A gap counts at least as this share of the motion: what moves less is not worth a name.
+const LEAST_GAP: f64 = 0.1;
+/// Log odds within which effects cannot be told apart: one to twenty.
+const INDISTINGUISHABLE: f64 = 3.0;
+/// Log odds beyond which a set does not count.
+const NEGLIGIBLE: f64 = 12.0;
+
+/// What could stand in the place of a named effect.
+#[derive(Clone)]
+pub struct Rival {
+    /// The effect.
+    pub placed: Placed,
+    /// Log odds of its set against the best one.
+    pub log_odds: f64,
+}
+
+/// One effect of the best set.
+#[derive(Clone)]
+pub struct EffectPosterior {
+    /// The effect.
+    pub placed: Placed,
+    /// (2), among the sets.
+    pub probability: f64,
+    /// ln Z + ln p lost without it.
+    pub worth: f64,
+    /// Share of the gap that it closes, rms, in the channel that profits most.
+    pub closes: f64,
+    /// What cannot be told from it, likeliest first.
+    pub rivals: Vec<Rival>,
+    /// What is the same thing by another name on this plant, whatever the data.
+    pub equivalents: Vec<Equivalent>,
+}
+
+/// The posterior.
+pub struct ModelPosterior {
+    /// The sets, likeliest first.
+    pub sets: Vec<CandidateModel>,
+    /// (1) of each.
+    pub probabilities: Vec<f64>,
+    /// The effects of the first.
+    pub effects: Vec<EffectPosterior>,
+}
+
+impl ModelPosterior {
+    /// The likeliest set.
+    #[must_use]
+    pub fn best(&self) -> Option<&CandidateModel> {
+        self.sets.first()
+    }
+
+    /// Probability that an effect is part of the cause, among the sets.
+    #[must_use]
+    pub fn probability_of(&self, placed: &Placed) -> f64 {
+        let own = name(placed);
+        self.sum(|set| set.key().contains(&own))
+    }
+
+    fn sum(&self, of: impl Fn(&CandidateModel) -> bool) -> f64 {
+        let sets = self.sets.iter().zip(&self.probabilities);
+        sets.filter(|(set, _)| of(set)).map(|(_, p)| p).sum()
+    }
+}
+
+/// Weighs the sets of a pool, all fitted under one noise model. `gap` is the rms of the gap of each channel.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn model_posterior(
+    search: &Search<'_>,
+    pool: Vec<CandidateModel>,
+    gap: &[f64],
+) -> Result<ModelPosterior, EstimateError> {
+    let relevance = Relevance::new(search, gap);
+    let sets = relevance.keep_relevant(search, pool)?;
+    let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
+    let odds: Vec<f64> = sets.iter().map(|set| (set.log_posterior() - best).exp()).collect();
+    let all: f64 = odds.iter().sum();
+    let mut posterior = ModelPosterior {
+        probabilities: odds.iter().map(|odds| odds / all).collect(),
+        sets,
+        effects: vec![],
+    };
+    let effects = posterior.sets.first().map_or(0, |set| set.effects().len());
+    posterior.effects = (0..effects)
+        .map(|i| effect(search, &relevance, &posterior, i))
+        .collect();
+    Ok(posterior)
+}
+
+/// What is worth a name.
+struct Relevance {
+    /// Gap of each channel.
+    gap: Vec<f64>,
+}
+
+impl Relevance {
+    fn new(search: &Search<'_>, gap: &[f64]) -> Relevance {
+        let channels = gap.iter().zip(search.problem.output_std());
+        Relevance {
+            gap: channels.map(|(gap, std)| gap.max(LEAST_GAP * std)).collect(),
+        }
+    }
+
+    /// Share of the gap that a set closes and another does not.
+    fn closes(&self, with: &CandidateModel, without: &CandidateModel) -> f64 {
+        let variances = without.fit.variance.iter().zip(&with.fit.variance);
+        let shares = variances.zip(&self.gap);
+        let shares = shares.map(|((poorer, better), gap)| (poorer - better).max(0.0).sqrt() / gap);
+        shares.fold(0.0, f64::max)
+    }
+
+    /// The sets of which every effect is relevant, likeliest first.
+    fn keep_relevant(
+        &self,
+        search: &Search<'_>,
+        mut pool: Vec<CandidateModel>,
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        rank(&mut pool);
+        let mut kept: Vec<CandidateModel> = vec![];
+        let mut rest = std::collections::VecDeque::from(pool);
+        while let Some(set) = rest.pop_front() {
+            let least = kept.first().map_or(f64::NEG_INFINITY, |best| {
+                best.log_posterior() - NEGLIGIBLE
+            });
+            if set.log_posterior() < least {
+                kept.push(set);
+                kept.extend(rest);
+                break;
+            }
+            let mut is_relevant = true;
+            for i in 0..set.effects().len() {
+                let key = set.key_without(i);
+                let known = kept.iter().chain(&rest).find(|other| other.key() == key);
+                let mut simpler = match known {
+                    Some(known) => vec![known.clone()],
+                    None => vec![search.fit(&remove(&set.fit.estimate, i))?],
+                };
+                // A law beyond a special case of it is held to the same.
+                simpler.extend(search.shrink(&set, i));
+                is_relevant &= simpler.iter().all(|other| self.closes(&set, other) >= RELEVANT);
+                for other in simpler {
+                    let key = other.key();
+                    if kept.iter().chain(&rest).all(|known| known.key() != key) {
+                        insert(&mut rest, other);
+                    }
+                }
+            }
+            if is_relevant {
+                kept.push(set);
+            }
+        }
+        rank(&mut kept);
+        Ok(kept)
+    }
+}
+
+/// Puts a set where it belongs in a ranked list.
+fn insert(list: &mut std::collections::VecDeque<CandidateModel>, set: CandidateModel) {
+    let worse = list.iter().position(|other| other.log_posterior() < set.log_posterior());
+    list.insert(worse.unwrap_or(list.len()), set);
+}
+
+fn effect(
+    search: &Search<'_>,
+    relevance: &Relevance,
+    posterior: &ModelPosterior,
+    index: usize,
+) -> EffectPosterior {
+    let best = &posterior.sets[0];
+    let own = &best.effects()[index];
+    let own_name = name(own);
+    let key = best.key();
+    let mut rivals: Vec<Rival> = vec![];
+    for set in &posterior.sets[1..] {
+        let log_odds = set.log_posterior() - best.log_posterior();
+        if log_odds < -INDISTINGUISHABLE || set.key().contains(&own_name) {
+            continue;
+        }
+        let new = set.effects().iter().filter(|placed| !key.contains(&name(placed)));
+        for placed in new {
+            if rivals.iter().all(|known| name(&known.placed) != name(placed)) {
+                rivals.push(Rival {
+                    placed: placed.clone(),
+                    log_odds,
+                });
+            }
+        }
+    }
+    let same = search.space.equivalents(best.effects(), index, &search.problem.model);
+    let is_one = |placed: &Placed| {
+        name(placed) == own_name
+            || rivals.iter().any(|rival| name(&rival.placed) == name(placed))
+            || same.iter().any(|other| {
+                other.kind == placed.effect.kind() && same_place(&other.at, &placed.at)
+            })
+    };
+    let smaller_key = best.key_without(index);
+    let smaller = posterior.sets.iter().find(|set| set.key() == smaller_key);
+    EffectPosterior {
+        placed: own.clone(),
+        probability: posterior.sum(|set| set.effects().iter().any(is_one)),
+        worth: smaller.map_or(f64::INFINITY, |set| best.log_posterior() - set.log_posterior()),
+        closes: smaller.map_or(1.0, |set| relevance.closes(best, set)),
+        rivals,
+        equivalents: same,
+    }
+}

@@ -1,0 +1,113 @@
+//! What no set of effects is expected to explain: one object for each problem.
+//!
+//! ```text
+//! V_c(S) + ε_c²,   ε_c² = (accuracy of the simulation)² + (noise of the inputs through the plant)²      (1)
+//! ln L = −½ Σ_c n_c ln(V_c + ε_c²),   n_c = share_c · N                     (2)
+//! ```
+//!
+//! V_c is the squared discrepancy of a channel, n_c the number of its samples that are independent. ε_c comes from the
+//! records and the nominal model ([`accuracy`], [`input_noise`]). The share of independent samples is that of one
+//! residual, and the same for all sets that are compared: first what re-estimated parameters leave, then what the best
+//! set leaves, once. With it the model discrepancy has an amplitude that every set infers, V_c itself, and a colour
+//! that none of them chooses. Coloured noise of a sensor has its share of independent samples alike. Where noise of the
+//! inputs is integrated by the plant, residuals are whitened before they are squared ([`whitening`]).
+//!
+//! Reference: \[Miller2019\], the coarsened likelihood.
+
+mod accuracy;
+mod input_noise;
+mod sensor;
+mod whitening;
+
+pub use accuracy::accuracy;
+pub use input_noise::{InputNoise, input_noise};
+pub use sensor::{is_sensor_noise, noise_variance, stepped};
+pub use whitening::whitening;
+
+use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
+use simgap_signal::correlation::effective_sample_count;
+
+/// A fit of the search stops when a step gains less than this: sets are told apart by more.
+const SEARCH_CONVERGED: f64 = 0.1;
+/// Steps of a fit of the search: it stops in a flat valley, a final fit does not.
+const SEARCH_STEPS: usize = 10;
+
+/// What no set is expected to explain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseModel {
+    /// Independent samples per sample of each channel.
+    pub effective_share: Vec<f64>,
+    /// ε_c over the standard deviation of the channel.
+    pub floor: Vec<f64>,
+}
+
+impl NoiseModel {
+    /// For a problem, with the colour of what a fit of it leaves.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated.
+    pub fn new(
+        problem: &Problem,
+        baseline: &Fit,
+        residual: &Fit,
+    ) -> Result<NoiseModel, EstimateError> {
+        let options = FitOptions::white(problem.model.outputs.len());
+        let driven = input_noise(problem, &baseline.estimate.nominal, &options, &[])?;
+        let of_simulation = accuracy(problem, baseline)?;
+        let std = problem.output_std();
+        let channels = of_simulation.iter().zip(&driven).zip(&std);
+        let floor = channels.map(|((accuracy, driven), std)| {
+            let share = accuracy.hypot(driven.beyond(0.0).sqrt()) / std;
+            if share.is_finite() { share.min(1.0) } else { 1.0 }
+        });
+        let noise = NoiseModel {
+            effective_share: vec![],
+            floor: floor.collect(),
+        };
+        Ok(noise.with_colour_of(residual))
+    }
+
+    /// The same with the colour of what another fit leaves.
+    #[must_use]
+    pub fn with_colour_of(&self, residual: &Fit) -> NoiseModel {
+        NoiseModel {
+            effective_share: effective_share(residual, self.floor.len()),
+            floor: self.floor.clone(),
+        }
+    }
+
+    /// Options of the fits of a search.
+    #[must_use]
+    pub fn search_options(&self) -> FitOptions {
+        FitOptions {
+            converged: SEARCH_CONVERGED,
+            keep_nuisance: true,
+            most_steps: SEARCH_STEPS,
+            ..self.final_options()
+        }
+    }
+
+    /// Options of a fit that is to be finished.
+    #[must_use]
+    pub fn final_options(&self) -> FitOptions {
+        FitOptions {
+            effective_share: self.effective_share.clone(),
+            floor: self.floor.clone(),
+            ..FitOptions::white(self.floor.len())
+        }
+    }
+}
+
+/// Share of independent samples in the discrepancy of each channel.
+fn effective_share(fit: &Fit, channels: usize) -> Vec<f64> {
+    let of_channel = |c: usize| {
+        let (mut effective, mut total) = (0.0, 0.0);
+        for run in &fit.discrepancy {
+            let count = run[c].len() as f64;
+            effective += effective_sample_count(&run[c]).unwrap_or(count).min(count);
+            total += count;
+        }
+        (effective / f64::max(total, 1.0)).clamp(1e-4, 1.0)
+    };
+    (0..channels).map(of_channel).collect()
+}

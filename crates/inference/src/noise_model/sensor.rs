@@ -1,0 +1,160 @@
+//! Noise of the sensors in what a set leaves.
+//!
+//! ```text
+//! r_n = a r_{n−1} + w_n,   0 ≤ a < 1,   w white                            (1)
+//! ```
+//!
+//! Where a discrepancy is (1), all of it is noise: of a sensor, its filter or its amplifier. Where it is not, the white
+//! part of it is, which differences of neighbouring samples tell.
+
+use simgap_effects::{Action, Placed};
+use simgap_estimate::Problem;
+use simgap_model::Location;
+use simgap_signal::correlation::{autocorrelation, effective_sample_count};
+use simgap_signal::noise::white_noise_std;
+
+/// Share of independent samples from which w of (1) is white.
+const WHITE: f64 = 0.8;
+/// Largest a of (1): a discrepancy that is correlated over more than ten samples is a motion.
+const MOST_COLOUR: f64 = 0.92;
+
+/// Which channels effects store in steps.
+#[must_use]
+pub fn stepped(problem: &Problem, effects: &[Placed]) -> Vec<bool> {
+    let at = |channel: &str| {
+        effects.iter().any(|placed| {
+            placed.at == Location::Channel(channel.to_string())
+                && matches!(placed.action(), Action::Sampling(map) if map.is_stepped())
+        })
+    };
+    let outputs = problem.model.outputs.iter();
+    outputs.map(|output| at(&output.channel)).collect()
+}
+
+/// Whether a discrepancy is noise of a sensor and nothing else, (1).
+#[must_use]
+pub fn is_sensor_noise(discrepancy: &[f64]) -> bool {
+    let Ok(correlation) = autocorrelation(discrepancy, 1) else {
+        return false;
+    };
+    let colour = correlation.get(1).copied().unwrap_or(1.0).max(0.0);
+    let innovations: Vec<f64> = discrepancy
+        .windows(2)
+        .map(|pair| pair[1] - colour * pair[0])
+        .collect();
+    let count = innovations.len() as f64;
+    let independent = effective_sample_count(&innovations).unwrap_or(0.0);
+    colour < MOST_COLOUR && independent > WHITE * count
+}
+
+/// Variance of the sensor's noise in each channel of discrepancies, over all runs.
+///
+/// Where values are stored in steps, noise moves some of them by a step and most not at all: there
+/// the robust estimate would be zero. Samples that are clipped, lost or struck hold no noise and say nothing of that of
+/// the others.
+#[must_use]
+pub fn noise_variance(discrepancy: &[Vec<Vec<f64>>], stepped: &[bool]) -> Vec<f64> {
+    (0..stepped.len())
+        .map(|c| {
+            let (mut square, mut count) = (0.0, 0.0);
+            for run in discrepancy {
+                count += run[c].len() as f64;
+                let noisy = match stepped[c] {
+                    true => run[c].clone(),
+                    false => holding_noise(&run[c]),
+                };
+                let sum: f64 = noisy.iter().map(|r| r * r).sum();
+                if is_sensor_noise(&noisy) {
+                    square += sum;
+                    continue;
+                }
+                let sigma = match white_noise_std(&noisy) {
+                    Ok(noise) if !stepped[c] => noise.std,
+                    _ => short_noise(&noisy),
+                };
+                square += (sigma * sigma * noisy.len() as f64).min(sum);
+            }
+            square / f64::max(count, 1.0)
+        })
+        .collect()
+}
+
+/// The discrepancies that hold noise: those of clipped, lost or struck samples are zero, or repeat themselves.
+fn holding_noise(discrepancy: &[f64]) -> Vec<f64> {
+    let repeats = |n: usize, other: Option<usize>| {
+        other.is_some_and(|other| discrepancy.get(other) == Some(&discrepancy[n]))
+    };
+    let holds_noise = |&n: &usize| {
+        discrepancy[n] != 0.0 && !repeats(n, n.checked_sub(1)) && !repeats(n, Some(n + 1))
+    };
+    let held = (0..discrepancy.len()).filter(holds_noise);
+    held.map(|n| discrepancy[n]).collect()
+}
+
+/// Noise of a run too short for the robust estimates, from its second differences, whose variance is
+/// 6 σ² for white noise. What moves from sample to sample counts as noise here.
+fn short_noise(values: &[f64]) -> f64 {
+    let squares: Vec<f64> = values
+        .windows(3)
+        .map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2) / 6.0)
+        .collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_clipped_samples_hold_no_noise() {
+        let mut word = 7_u64;
+        let mut unit = || {
+            word = word
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (word >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let noise: Vec<f64> = (0..8000).map(|_| 12_f64.sqrt() * unit()).collect();
+        // Two thirds of the samples clipped, at a level that is not quite known.
+        let clipped = (0..8000).map(|n| if n % 60 < 40 { 1e-3 } else { noise[n] });
+        let run = vec![clipped.collect::<Vec<f64>>()];
+        let of = |stepped: bool| noise_variance(std::slice::from_ref(&run), &[stepped])[0];
+        assert!((3.0 * of(false) - 1.0).abs() < 0.2, "{}", of(false));
+        assert!(of(true) > 0.0);
+    }
+
+    fn white(count: usize) -> Vec<f64> {
+        let mut word = 11_u64;
+        let mut unit = || {
+            word = word
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (word >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        (0..count).map(|_| 12_f64.sqrt() * unit()).collect()
+    }
+
+    #[test]
+    fn verify_coloured_noise_of_a_sensor_counts_in_full() {
+        for colour in [0.0, 0.3, 0.65, 0.9] {
+            let mut noise = white(6000);
+            for n in 1..noise.len() {
+                noise[n] += colour * noise[n - 1];
+            }
+            assert!(is_sensor_noise(&noise), "{colour}");
+            let own = noise.iter().map(|r| r * r).sum::<f64>() / 6000.0;
+            let found = noise_variance(&[vec![noise]], &[false])[0];
+            assert!((found / own - 1.0).abs() < 1e-12, "{colour}");
+        }
+    }
+
+    #[test]
+    fn a_motion_is_no_noise() {
+        let noise = white(6000);
+        let motion = |n: usize| 2.0 * (0.2 * n as f64).sin();
+        let left: Vec<f64> = (0..6000).map(|n| motion(n) + noise[n]).collect();
+        assert!(!is_sensor_noise(&left));
+        let found = noise_variance(&[vec![left]], &[false])[0];
+        assert!((found - 1.0).abs() < 0.15, "{found}");
+    }
+}

@@ -1,0 +1,147 @@
+//! A set with one more effect, from the scores of all candidates.
+
+use rayon::prelude::*;
+use simgap_effects::{LINES, SiteScale};
+use simgap_estimate::{
+    Base, Candidate, EstimateError, FitOptions, Score, Start, linearise_at, score,
+};
+use simgap_model::Location;
+
+use crate::candidate_model::{CandidateModel, add_scored, is_of, name, prior_score, rank};
+use crate::search::Search;
+
+/// Steps of a rough fit.
+const ROUGH_STEPS: usize = 3;
+/// Steps of a hidden mass as a multiple: the way of a mode to its frequency, mass and stiffness winds.
+const WINDING: usize = 4;
+/// Sets that are finished of those fitted roughly.
+const FINISHED: usize = 12;
+
+impl Search<'_> {
+    /// Every set worth a fit with one more effect than `base`, best first.
+    pub(crate) fn extend(
+        &self,
+        base: &CandidateModel,
+        most: usize,
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        let linear = linearise_at(self.problem, &base.fit, &self.options)?;
+        self.extend_at(base, &linear, most)
+    }
+
+    pub(crate) fn extend_at(
+        &self,
+        base: &CandidateModel,
+        linear: &Base<'_>,
+        most: usize,
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        let scores = self.scores(base, linear);
+        let starts: Vec<Start> = pick(scores, most, base.effects().is_empty())
+            .into_iter()
+            .map(|score| add_scored(&base.fit.estimate, score))
+            .collect();
+        Ok(self.fit_all(&starts, linear))
+    }
+
+    /// The gain that the best candidate beside a set promises.
+    pub(crate) fn best_gain(&self, set: &CandidateModel) -> Result<f64, EstimateError> {
+        let linear = linearise_at(self.problem, &set.fit, &self.options)?;
+        let scores = self.scores(set, &linear);
+        Ok(scores.first().map_or(0.0, |score| score.gain))
+    }
+
+    /// Scores of all candidates that are not in the set yet, shapes included, best first.
+    fn scores(&self, base: &CandidateModel, linear: &Base<'_>) -> Vec<Score> {
+        // Lines that the set leaves: where clocks and hidden modes start.
+        let mut lines: Vec<(Location, [f64; LINES])> = vec![];
+        for (candidate, _) in &self.space.candidates {
+            if lines.iter().all(|(at, _)| *at != candidate.at) {
+                let left = self.problem.lines_left(&base.fit, &candidate.at);
+                lines.push((candidate.at.clone(), left));
+            }
+        }
+        let sized = |candidate: &Candidate, scale: &SiteScale| {
+            let left = lines.iter().find(|(at, _)| *at == candidate.at);
+            SiteScale {
+                lines_hz: left.map_or(scale.lines_hz, |(_, lines)| *lines),
+                ..*scale
+            }
+        };
+        let scored = self
+            .space
+            .candidates
+            .par_iter()
+            .filter(|(candidate, _)| !base.rules_out(candidate))
+            .map(|(candidate, scale)| match prior_score(base, candidate) {
+                // Already adjustable under its narrow prior: its score starts from there.
+                Some(score) => vec![score],
+                None => score(linear, candidate, &sized(candidate, scale)).unwrap_or_default(),
+            })
+            .collect::<Vec<_>>();
+        let mut scores: Vec<Score> = scored.into_iter().flatten().collect();
+        scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        scores
+    }
+
+    /// Fits sets; of the same set from several starts the best stays. Best first.
+    ///
+    /// Many sets are first fitted roughly; only the best of them are worth the whole way.
+    pub(crate) fn fit_all(&self, starts: &[Start], base: &Base<'_>) -> Vec<CandidateModel> {
+        if starts.len() <= FINISHED {
+            return self.fit_steps(starts, base, self.options.most_steps);
+        }
+        let mut rough = self.fit_steps(starts, base, ROUGH_STEPS);
+        let rest = rough.split_off(rough.len().min(FINISHED));
+        let promising: Vec<Start> = rough.iter().map(|set| set.fit.estimate.clone()).collect();
+        let mut fitted = self.fit_steps(&promising, base, self.options.most_steps);
+        fitted.extend(rough);
+        fitted.extend(rest);
+        rank(&mut fitted);
+        fitted
+    }
+
+    /// Fits sets in so many steps at the most, those with hidden masses in more. Best first.
+    pub(crate) fn fit_steps(
+        &self,
+        starts: &[Start],
+        base: &Base<'_>,
+        most_steps: usize,
+    ) -> Vec<CandidateModel> {
+        let fitted = starts.par_iter().filter_map(|start| {
+            let adds_mass = start.effects.iter().any(|p| p.action().adds_mass());
+            let options = FitOptions {
+                most_steps: if adds_mass { WINDING * most_steps } else { most_steps },
+                ..self.options.clone()
+            };
+            // A start from which the plant runs away is no candidate.
+            Some(self.candidate_model(base.fit(start, &options).ok()?))
+        });
+        let mut fitted: Vec<CandidateModel> = fitted.collect();
+        fitted.retain(|set| set.log_marginal_likelihood.is_finite());
+        rank(&mut fitted);
+        fitted
+    }
+}
+
+/// The best `most` scores, each candidate in its best shape. Of single effects two shapes are picked, and every kind gets
+/// a fit at its best place: the linear score says little where the gap is large.
+fn pick(scores: Vec<Score>, most: usize, every_kind: bool) -> Vec<Score> {
+    let shapes = if every_kind { 2 } else { 1 };
+    let mut picked: Vec<Score> = Vec::new();
+    for score in scores {
+        let twins = picked.iter().filter(|p| name(&p.start) == name(&score.start));
+        let is_new_shape = twins.count() < shapes;
+        let has_kin = |p: &Score| p.start.effect.kind() == score.start.effect.kind();
+        let room = picked.len() < most && score.gain > 1.0;
+        if is_new_shape && (room || (every_kind && !picked.iter().any(has_kin))) {
+            picked.push(score);
+        }
+    }
+    picked
+}
+
+impl CandidateModel {
+    /// Whether a candidate is one of the effects of the set.
+    pub(crate) fn holds(&self, candidate: &Candidate) -> bool {
+        self.effects().iter().any(|placed| is_of(placed, candidate))
+    }
+}

@@ -1,0 +1,158 @@
+//! One effect of a set in the place of which a related one stands: a law that contains it, a special case of it, dynamics
+//! that act as it does below their own mode.
+
+use rayon::prelude::*;
+use simgap_effects::{Effect, Placed};
+use simgap_estimate::{Base, EstimateError, Start, linearise_at, score_outright};
+use simgap_model::{GROUND, Location};
+
+use crate::candidate_model::{CandidateModel, add_scored, is_nominal, remove, replace};
+use crate::search::Search;
+
+/// Hidden masses are fitted from this many of the values at which they act as the parameter does.
+const STARTS: usize = 2;
+/// Single nominal parameters whose dynamics are tried.
+const LIMITS: usize = 4;
+
+impl Search<'_> {
+    /// The sets in which one effect has grown into one that contains it, turns into it or resembles it.
+    pub(crate) fn grow(
+        &self,
+        base: &CandidateModel,
+        index: usize,
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        let starts = self.grown(base, index);
+        if starts.is_empty() {
+            return Ok(vec![]);
+        }
+        let linear = linearise_at(self.problem, &base.fit, &self.options)?;
+        Ok(self.fit_all(&starts, &linear))
+    }
+
+    /// The sets in which one effect has shrunk to a special case it contains.
+    pub(crate) fn shrink(&self, base: &CandidateModel, index: usize) -> Vec<CandidateModel> {
+        let old = &base.effects()[index];
+        let special = self.space.candidates.iter().filter(|(candidate, _)| {
+            candidate.at == old.at && old.effect.contains().contains(&candidate.effect.kind())
+        });
+        let starts: Vec<Start> = special
+            .filter_map(|(candidate, scale)| {
+                let mut start = base.fit.estimate.clone();
+                // The first values of a larger effect are those of its special case.
+                let mut values = candidate.effect.starts(scale).into_iter().next()?;
+                values
+                    .iter_mut()
+                    .zip(&old.values)
+                    .for_each(|(value, old)| *value = *old);
+                start.effects[index] = Placed::new(candidate.effect, old.at.clone(), values);
+                Some(start)
+            })
+            .collect();
+        let fitted = starts.par_iter().filter_map(|start| self.fit(start).ok());
+        fitted.collect()
+    }
+
+    /// Hidden masses, fitted from where they act as a fitted nominal parameter of their place does.
+    pub(crate) fn fit_dynamics_of_parameters(
+        &self,
+        base: &CandidateModel,
+        singles: &[CandidateModel],
+        linear: &Base<'_>,
+    ) -> Vec<CandidateModel> {
+        let limits = singles.iter().filter_map(|single| match single.effects() {
+            [limit] if is_nominal(limit) => Some(limit),
+            _ => None,
+        });
+        let pairs: Vec<_> = limits
+            .take(LIMITS)
+            .flat_map(|limit| self.space.candidates.iter().map(move |known| (limit, known)))
+            .filter(|(limit, (candidate, _))| {
+                turns_into((candidate.effect, &candidate.at), limit)
+            })
+            .collect();
+        let starts = pairs
+            .into_par_iter()
+            .map(|(limit, (candidate, scale))| {
+                let kind = limit.effect.kind();
+                let shapes = candidate.effect.grown_from(kind, &limit.values, scale);
+                let best = score_outright(linear, candidate, &shapes).unwrap_or_default();
+                let best = best.into_iter().take(STARTS);
+                best.map(|score| add_scored(&base.fit.estimate, score))
+                    .collect::<Vec<Start>>()
+            })
+            .collect::<Vec<_>>();
+        self.fit_all(&starts.concat(), linear)
+    }
+
+    fn grown(&self, base: &CandidateModel, index: usize) -> Vec<Start> {
+        let old = &base.effects()[index];
+        let kind = old.effect.kind();
+        let larger = self.space.candidates.iter().filter_map(|(candidate, scale)| {
+            let effect = candidate.effect;
+            if base.holds(candidate) {
+                return None;
+            }
+            let mut smaller = effect.contains().iter().chain(effect.turns_into());
+            if candidate.at == old.at && smaller.any(|known| *known == kind) {
+                return Some((candidate, *scale));
+            }
+            // Of a mass and its spring to the ground, the spring has the sizes.
+            let spring = spring_to_ground(&candidate.at, &old.at)?;
+            let resembles = effect.resembles().contains(&kind);
+            Some((candidate, self.space.scale_at(spring)?)).filter(|_| resembles)
+        });
+        larger
+            .flat_map(|(candidate, scale)| {
+                let shapes = candidate.effect.grown_from(kind, &old.values, &scale);
+                shapes.into_iter().map(move |values| {
+                    let grown = Placed::new(candidate.effect, candidate.at.clone(), values);
+                    without_limits(replace(&base.fit.estimate, index, grown.clone()), &grown)
+                })
+            })
+            .collect()
+    }
+}
+
+/// Whether dynamics at a place turn into an effect of it where their own mode is above all motion.
+pub(crate) fn turns_into((dynamics, at): (&dyn Effect, &Location), limit: &Placed) -> bool {
+    *at == limit.at && dynamics.turns_into().contains(&limit.effect.kind())
+}
+
+/// A start without the other parameters that an effect of it turns into: it takes the place of all.
+fn without_limits(mut start: Start, dynamics: &Placed) -> Start {
+    let is_limit = |placed: &Placed| turns_into((dynamics.effect, &dynamics.at), placed);
+    while let Some(i) = start.effects.iter().position(is_limit) {
+        start = remove(&start, i);
+    }
+    start
+}
+
+/// The spring, of a mass and its spring to the ground.
+fn spring_to_ground<'a>(one: &'a Location, other: &'a Location) -> Option<&'a Location> {
+    match (one, other) {
+        (Location::Mass(mass), spring @ Location::Between(pair))
+        | (spring @ Location::Between(pair), Location::Mass(mass)) => {
+            let joins = pair.contains(mass) && pair.iter().any(|node| node == GROUND);
+            joins.then_some(spring)
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_mass_and_its_spring_to_the_ground_the_spring_has_the_sizes() {
+        let mass = |name: &str| Location::Mass(name.into());
+        let spring = |a: &str, b: &str| Location::Between([a.into(), b.into()]);
+        let leg = spring("table", GROUND);
+        assert_eq!(spring_to_ground(&mass("table"), &leg), Some(&leg));
+        assert_eq!(spring_to_ground(&leg, &mass("table")), Some(&leg));
+        assert_eq!(spring_to_ground(&mass("arm"), &leg), None);
+        let between = spring("table", "arm");
+        assert_eq!(spring_to_ground(&mass("table"), &between), None);
+        assert_eq!(spring_to_ground(&leg, &leg), None);
+    }
+}

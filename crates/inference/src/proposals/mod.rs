@@ -1,0 +1,7 @@
+//! Proposals of sets: where the next fits start. They may miss a set; they do not judge one.
+
+mod add;
+mod grow;
+mod multiple_shooting;
+mod multistart;
+mod unite;

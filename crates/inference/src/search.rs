@@ -1,0 +1,211 @@
+//! The search: which proposals are made, within a budget.
+//!
+//! ```text
+//! single effects: by score; from many values; dynamics of parameters
+//! pairs, sets of three: from the best sets so far, by score and from many values
+//! stretches of the records, each with a start of its own (multiple shooting)
+//! the best set: each effect removed, exchanged, grown, shrunk; one more added; until it stays
+//! ```
+//!
+//! A stage is left out where the best set promises nothing: no candidate's score could pay for its prior.
+
+use rayon::prelude::*;
+use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at};
+
+use crate::candidate_model::{CandidateModel, rank, remove};
+use crate::marginal_likelihood::{NominalPrior, log_marginal_likelihood};
+use crate::model_space::ModelSpace;
+use crate::noise_model::NoiseModel;
+
+/// Sets of each size that the next size starts from.
+const SURVIVORS: [usize; 2] = [5, 3];
+/// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
+const FITTED: [usize; 3] = [18, 6, 4];
+/// Sets that are fitted again under another noise model.
+const REFITTED: usize = 16;
+/// Candidates fitted in the place of each effect of the best set, and beside it.
+const EXCHANGED: usize = 8;
+const ADDED: usize = 4;
+/// Rounds of changes to the best set.
+const ROUNDS: usize = 4;
+
+/// Told what is being done, and asked whether to go on.
+#[derive(Clone, Copy)]
+pub struct Budget<'a> {
+    /// Called at the start of each stage.
+    pub progress: &'a (dyn Fn(&str) + Sync),
+    /// Whether the search ends here.
+    pub is_spent: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// A search over the sets of a model space.
+pub struct Search<'a> {
+    /// What is searched in.
+    pub problem: &'a Problem,
+    /// How sets are fitted.
+    pub options: FitOptions,
+    /// What there is.
+    pub space: ModelSpace,
+    pub(crate) nominal: NominalPrior,
+    /// When to stop.
+    pub budget: Budget<'a>,
+}
+
+impl<'a> Search<'a> {
+    /// A search for every kind.
+    #[must_use]
+    pub fn new(
+        problem: &'a Problem,
+        noise: &NoiseModel,
+        space: ModelSpace,
+        budget: Budget<'a>,
+    ) -> Search<'a> {
+        Search {
+            problem,
+            options: noise.search_options(),
+            space,
+            nominal: NominalPrior::Wrong,
+            budget,
+        }
+    }
+
+    /// The same search for nominal parameters alone, each as far off as the model states.
+    #[must_use]
+    pub fn of_stated_parameters(&self, stated_std: f64) -> Search<'a> {
+        Search {
+            problem: self.problem,
+            options: self.options.clone(),
+            space: self.space.of_families(|family| family == simgap_effects::Family::NominalParameter),
+            nominal: NominalPrior::Stated(stated_std),
+            budget: self.budget,
+        }
+    }
+
+    /// Fits a set from a start.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated from the start.
+    pub fn fit(&self, start: &Start) -> Result<CandidateModel, EstimateError> {
+        Ok(self.candidate_model(fit(self.problem, start, &self.options)?))
+    }
+
+    pub(crate) fn candidate_model(&self, fit: Fit) -> CandidateModel {
+        let scale_at = |at: &simgap_model::Location| self.space.scale_at(at);
+        CandidateModel {
+            log_marginal_likelihood: log_marginal_likelihood(&fit, scale_at, self.nominal),
+            log_prior: self.space.log_prior(&fit.estimate.effects),
+            fit,
+        }
+    }
+
+    /// The sets of a pool, fitted again under another noise model: the best of them, and all that hold one effect or none.
+    pub fn refit(&mut self, pool: &[CandidateModel], noise: &NoiseModel) -> Vec<CandidateModel> {
+        self.options = noise.search_options();
+        let again = pool.iter().enumerate();
+        let again = again.filter(|(i, set)| *i < REFITTED || set.effects().len() < 2);
+        let again: Vec<&CandidateModel> = again.map(|(_, set)| set).collect();
+        let fitted = again.par_iter().filter_map(|set| self.fit(&set.fit.estimate).ok());
+        let mut fitted: Vec<CandidateModel> = fitted.collect();
+        rank(&mut fitted);
+        fitted
+    }
+
+    /// Whether no candidate beside the best set could pay for its prior.
+    fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
+        let Some(best) = pool.first() else {
+            return Ok(false);
+        };
+        Ok((self.budget.is_spent)() || self.best_gain(best)? < self.space.price())
+    }
+
+    /// Sets of none to three effects, best first.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated.
+    pub fn run(&self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
+        let step = self.budget.progress;
+        let mut pool = vec![base.clone()];
+        if self.is_settled(&pool)? {
+            return Ok(pool);
+        }
+        step("single effects");
+        let linear = linearise_at(self.problem, &base.fit, &self.options)?;
+        pool.extend(self.extend_at(base, &linear, FITTED[0])?);
+        rank(&mut pool);
+        if !self.is_settled(&pool)? {
+            step("single effects from many values");
+            pool.extend(self.multistart(base, &linear)?);
+            pool.extend(self.fit_from_given(base, FITTED[0])?);
+        }
+        pool.extend(self.fit_dynamics_of_parameters(base, &pool, &linear));
+        rank(&mut pool);
+        let mut front: Vec<CandidateModel> = pool.clone();
+        front.retain(|set| !set.effects().is_empty());
+        for (size, survivors) in SURVIVORS.iter().enumerate() {
+            if self.is_settled(&pool)? {
+                return Ok(pool);
+            }
+            step(["pairs of effects", "sets of three"][size]);
+            let best: Vec<&CandidateModel> = front.iter().take(*survivors).collect();
+            let mut next: Vec<CandidateModel> = Vec::new();
+            for survivor in &best {
+                next.extend(self.extend(survivor, FITTED[size + 1])?);
+            }
+            if size == 0 {
+                next.extend(self.unite(&pool)?);
+                rank(&mut next);
+                if !self.is_settled(&next)? {
+                    step("pairs from many values");
+                    next.extend(self.extend_from_many_values(&best)?);
+                }
+            }
+            rank(&mut next);
+            pool.extend(next.iter().cloned());
+            rank(&mut pool);
+            front = next;
+        }
+        if !self.is_settled(&pool)? {
+            step("single effects in stretches");
+            // Where stretches cannot be simulated, nothing is found in them.
+            let found = self.multiple_shooting(base).unwrap_or_default();
+            let leads = found.first().filter(|set| set.log_posterior() > pool[0].log_posterior());
+            if let Some(best) = leads {
+                pool.extend(self.extend(best, FITTED[1])?);
+            }
+            pool.extend(found);
+            rank(&mut pool);
+        }
+        Ok(pool)
+    }
+
+    /// Changes the best set by one effect, and again, as long as a better one is found. What was tried stays in the pool.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated.
+    pub fn refine(&self, pool: &mut Vec<CandidateModel>) -> Result<(), EstimateError> {
+        for _ in 0..ROUNDS {
+            let Some(best) = pool.first().cloned() else {
+                return Ok(());
+            };
+            (self.budget.progress)("changes to the best set");
+            pool.extend(self.extend(&best, ADDED)?);
+            let changed = (0..best.effects().len()).into_par_iter().map(|i| {
+                let mut changed = self.grow(&best, i)?;
+                changed.extend(self.shrink(&best, i));
+                if let Ok(smaller) = self.fit(&remove(&best.fit.estimate, i)) {
+                    changed.extend(self.extend(&smaller, EXCHANGED)?);
+                    changed.push(smaller);
+                }
+                Ok(changed)
+            });
+            let changed = changed.collect::<Result<Vec<_>, EstimateError>>()?;
+            pool.extend(changed.into_iter().flatten());
+            pool.retain(|set| set.log_marginal_likelihood.is_finite());
+            rank(pool);
+            if (self.budget.is_spent)() || pool[0].key() == best.key() {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+}
