@@ -66,6 +66,9 @@ pub(crate) struct DiagnoseArgs {
     /// Threads; the result does not depend on it [default: all cores].
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<usize>,
+    /// Also writes `sets.json`: every set of effects that was fitted, with the terms that decide between them.
+    #[arg(long)]
+    pub(crate) sets: bool,
     /// Seconds after which the search ends with the best answer so far.
     #[arg(long, value_name = "SECONDS")]
     pub(crate) budget: Option<f64>,

@@ -46,6 +46,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
         withhold: vec![],
         jobs: None,
         budget: None,
+        sets: false,
         seed: 0,
         format: Format::Human,
     })

@@ -78,6 +78,9 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         seed: args.seed,
     };
     let json = write(&outcome, &model, &context, &args.out)?;
+    if args.sets {
+        write_text_atomic(&args.out.join("sets.json"), &crate::json(&outcome.sets)?)?;
+    }
     match args.format {
         Format::Json => crate::say_plain(&json),
         Format::Human => {

@@ -14,9 +14,6 @@ const FEWEST: usize = 20;
 /// Fewest samples of a record to judge by.
 const FEWEST_HELD_BACK: usize = 10;
 
-/// Samples the search may use; more make it slower, not wiser.
-const SEARCH_SAMPLES: usize = 12_000;
-
 /// Records in the units of the model, divided.
 pub(crate) struct Data {
     /// Learnt from.
@@ -123,42 +120,4 @@ fn to_microseconds(stamp_s: Option<&f64>) -> f64 {
 
 fn held_back(record: &Record) -> usize {
     (record.len() as f64 * HELD_BACK) as usize
-}
-
-/// The stretches of the training runs that the search uses: all of them when they are short, else
-/// the most energetic stretch of each, in equal parts.
-pub(crate) fn excerpts(train: &[Run]) -> Vec<Run> {
-    let total: usize = train.iter().map(|run| run.len).sum();
-    if total <= SEARCH_SAMPLES {
-        return train.to_vec();
-    }
-    let share = SEARCH_SAMPLES as f64 / total as f64;
-    train
-        .iter()
-        .map(|run| {
-            let len = ((run.len as f64 * share) as usize).clamp(1, run.len);
-            let start = most_energetic(run, len);
-            run.slice(start..start + len)
-        })
-        .collect()
-}
-
-fn most_energetic(run: &Run, len: usize) -> usize {
-    let mut energy = vec![0.0; run.len];
-    for values in run.measured.iter().flatten() {
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let scale: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-        for (sum, value) in energy.iter_mut().zip(values) {
-            *sum += (value - mean) * (value - mean) / scale;
-        }
-    }
-    let mut window: f64 = energy[..len].iter().sum();
-    let (mut best, mut at) = (window, 0);
-    for start in 1..=(run.len - len) {
-        window += energy[start + len - 1] - energy[start - 1];
-        if window > best {
-            (best, at) = (window, start);
-        }
-    }
-    at
 }

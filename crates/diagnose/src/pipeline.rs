@@ -14,12 +14,14 @@ use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
 
 use crate::check::Check;
-use crate::data::{Data, divide, excerpts};
+use crate::data::{Data, divide};
+use crate::excerpt::Excerpt;
 use crate::decide::{Decision, decide};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::final_fit::fit_to_all;
 use crate::locate::Located;
 use crate::outcome::{corrected_model, series};
+use crate::sets::{FittedSet, fitted_sets};
 use crate::{DiagnoseError, Status, describe, locate};
 
 /// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
@@ -66,6 +68,8 @@ pub struct Outcome {
     pub series: Vec<CheckSeries>,
     /// The motion across each member along the check records.
     pub motions: Vec<PlaceMotion>,
+    /// Every set that was fitted, likeliest first, with the terms that decide: for replay and inspection.
+    pub sets: Vec<FittedSet>,
 }
 
 /// Everything that is known before effects are looked for.
@@ -74,6 +78,8 @@ pub(crate) struct Prepared {
     pub(crate) train: Problem,
     /// The part of them that is searched in.
     pub(crate) excerpt: Problem,
+    /// How it lies in them.
+    pub(crate) stretches: Excerpt,
     /// The model as given.
     pub(crate) nominal: Fit,
     /// With its nominal parameters re-estimated.
@@ -93,7 +99,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     known_kinds(request.withheld)?;
     let data = divide(request.model, request.train, request.check)?;
     progress("nominal model");
-    let prepared = prepare(request, &data)?;
+    let mut prepared = prepare(request, &data)?;
 
     let options = FitOptions::white(request.model.outputs.len());
     let start = Start {
@@ -104,6 +110,8 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let baseline = fit(&prepared.excerpt, &start, &options)?;
     let noise = NoiseModel::new(&prepared.excerpt, &baseline, &prepared.recalibrated)?;
     let space = ModelSpace::new(&prepared.excerpt, &baseline, request.withheld)?;
+    prepared.excerpt.scales = space.scales();
+    prepared.train.scales = space.scales();
     let budget = Budget {
         progress,
         is_spent: request.is_spent,
@@ -123,9 +131,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     progress("final fit");
     let final_options = noise.final_options();
     let as_given = &prepared.nominal.estimate.initial;
-    let found = decision.start();
+    let found = prepared.stretches.to_records(decision.start());
     let excerpt = &prepared.excerpt;
-    let estimate = fit_to_all(&prepared.train, excerpt, found, as_given, &final_options)?;
+    let estimate = fit_to_all(&prepared.train, excerpt, &found, as_given, &final_options)?;
     finish(request, &data, &prepared, decision, estimate, &final_options, progress, stopped_early)
 }
 
@@ -170,10 +178,12 @@ fn prepare(request: &Request<'_>, data: &Data) -> Result<Prepared, DiagnoseError
         ..options
     };
     let recalibrated = fit(&train, &start, &loose)?;
-    let excerpt = train.with_runs(excerpts(&train.runs));
+    let stretches = Excerpt::of(&train.runs);
+    let excerpt = train.with_runs(stretches.runs.clone());
     Ok(Prepared {
         train,
         excerpt,
+        stretches,
         nominal,
         recalibrated,
         parameters,
@@ -224,6 +234,7 @@ fn finish(
             &checked.predictions[2],
         )?,
         motions,
+        sets: fitted_sets(&decision.posterior),
         diagnosis: Diagnosis {
             schema: "simgap-diagnosis/1",
             model: request.model.name.clone(),

@@ -367,9 +367,8 @@ pub trait Effect: Sync + Send {
         None
     }
 
-    /// Whether values are still what the kind says, at a place of these sizes; a fit that leaves them is no
-    /// hypothesis.
-    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+    /// Whether the prior of the kind has any density at these values, at a place of these sizes.
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         let _ = (values, scale);
         true
     }

@@ -6,6 +6,7 @@
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion, gather};
 
+use crate::prior::{Prior, usual_prior};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
 
@@ -134,6 +135,10 @@ impl Effect for FreeForce {
         &ALL
     }
 
+    fn prior(&self, place: usize, scale: &SiteScale) -> Prior {
+        free_prior(self, place, scale, scale.force_n)
+    }
+
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         let [low, high] = scale.displacement_range_m;
         let start = Force {
@@ -229,6 +234,10 @@ impl Effect for FreeCurve {
         &ALL
     }
 
+    fn prior(&self, place: usize, scale: &SiteScale) -> Prior {
+        free_prior(self, place, scale, scale.signal)
+    }
+
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         let [low, high] = scale.signal_range;
         let mut start = vec![START * scale.signal; CURVES + 2];
@@ -252,6 +261,14 @@ impl Effect for FreeCurve {
 
     fn experiment(&self) -> &'static str {
         "a slow staircase of known values over the whole range"
+    }
+}
+
+/// A factor of either sign, as large as what is typical of the place.
+fn free_prior(law: &dyn Effect, place: usize, scale: &SiteScale, std: f64) -> Prior {
+    match law.parameters().get(place).and_then(|p| p.neutral) {
+        Some(mean) => Prior::Normal { mean, std },
+        None => usual_prior(law, place, scale),
     }
 }
 

@@ -118,7 +118,7 @@ fn verify_attached_mode_at_its_host() {
 fn verify_an_attached_mass_of_nothing_is_no_hypothesis() {
     let keeps = |share: f64| {
         let mass_kg = share * scale().mass_kg;
-        effect("attached_mode").keeps_its_meaning(&[mass_kg, 12.0, 0.01, 0.0, 0.0], &scale())
+        effect("attached_mode").has_support(&[mass_kg, 12.0, 0.01, 0.0, 0.0], &scale())
     };
     assert!(keeps(0.5) && keeps(1e-4));
     assert!(!keeps(1e-6) && !keeps(0.0));
@@ -260,7 +260,7 @@ fn verify_flexible_support_starts_at_lines() {
 fn verify_a_stiffness_that_hardly_moves_does_not_swing() {
     let keeps = |periods: f64| {
         let freq_hz = periods / scale().duration_s;
-        effect("time_varying_stiffness").keeps_its_meaning(&[100.0, freq_hz, 1.0], &scale())
+        effect("time_varying_stiffness").has_support(&[100.0, freq_hz, 1.0], &scale())
     };
     assert!(keeps(20.0) && keeps(0.1));
     assert!(!keeps(1e-3));

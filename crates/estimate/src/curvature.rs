@@ -40,14 +40,24 @@ pub struct Curvature {
 }
 
 impl Curvature {
+    /// H with the normal priors that a fit puts on nominal parameters: what intervals of the effects are taken from, which
+    /// turn infinite along directions that the data do not see.
+    pub(crate) fn with_fixed_priors(&self) -> Mat<f64> {
+        let mut hessian = self.hessian.clone();
+        for (i, coordinate) in self.coordinates.iter().enumerate() {
+            hessian[(i, i)] += (coordinate.scale / coordinate.prior_std).powi(2);
+        }
+        hessian
+    }
+
     /// From the normal equations of a step, which hold the prior.
     pub(crate) fn of(layout: &Layout, theta: &[f64], with_prior: &Mat<f64>) -> Curvature {
         let mut hessian = with_prior.clone();
         let coordinates = layout.owners().into_iter().enumerate();
         let coordinates = coordinates.map(|(i, owner)| {
             let (scale, prior_std) = (layout.scale[i], layout.prior_std[i]);
-            let precision = (scale / prior_std).powi(2);
-            hessian[(i, i)] = (hessian[(i, i)] - precision).max(0.0);
+            let [_, _, of_prior] = layout.prior_at(i, theta[i]);
+            hessian[(i, i)] = (hessian[(i, i)] - of_prior * scale.powi(2)).max(0.0);
             Coordinate {
                 owner,
                 value: theta[i],

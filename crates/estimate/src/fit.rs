@@ -1,10 +1,10 @@
 //! Output-error least squares with unknown noise levels.
 //!
 //! ```text
-//! J(θ) = ½ Σ_c ρ_c N_c ln(V_c(θ) + ε_c²) + ½ Σ_i ((θ_i − μ_i)/σ_i)²       (1)
+//! J(θ) = ½ Σ_c ρ_c N_c ln(V_c(θ) + ε_c²) − Σ_i ln p(θ_i)                   (1)
 //! V_c = Σ r_c² / N_c,   r_c = measured − predicted, channel c             (2)
 //! w_c = ρ_c / (V_c + ε_c²)                                                (3)
-//! (Jᵀ W J + Σ⁻¹ + λ diag) δ = Jᵀ W r − Σ⁻¹ (θ − μ)                        (4)
+//! (Jᵀ W J + P + λ diag) δ = Jᵀ W r + ∂ Σ ln p / ∂θ                        (4)
 //! ```
 //!
 //! (1) is the likelihood with the noise variance of each channel concentrated out, ρ_c the share
@@ -285,9 +285,9 @@ fn finish(
     let (objective, variance) = merit.of(layout, theta, &at.discrepancy);
     let (hessian, _) = normal_equations(layout, theta, &at, &merit.weights(&variance));
     let all: Vec<usize> = (0..layout.len()).collect();
-    let spread = variances(&hessian, &all);
-    let misfit = objective - merit.prior(layout, theta);
     let curvature = Curvature::of(layout, theta, &hessian);
+    let spread = variances(&curvature.with_fixed_priors(), &all);
+    let misfit = objective - merit.prior(layout, theta);
     let estimate = layout.unpack(theta);
     let interval = |e: usize, i: usize, value: f64| {
         let Some(entry) = layout.entry(e, i) else {
@@ -383,8 +383,8 @@ impl<'a> Merit<'a> {
 
     /// The second sum of (1).
     pub(crate) fn prior(&self, layout: &Layout, theta: &[f64]) -> f64 {
-        let deviation = |i: usize| (theta[i] - layout.prior_mean[i]) / layout.prior_std[i];
-        (0..theta.len()).map(|i| 0.5 * deviation(i).powi(2)).sum()
+        let entries = theta.iter().enumerate();
+        entries.map(|(i, value)| layout.prior_at(i, *value)[0]).sum()
     }
 
     pub(crate) fn weights(&self, variance: &[f64]) -> Vec<f64> {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use simgap_effects::{Effect, Parameter, Placed};
+use simgap_effects::{Effect, Parameter, Placed, Prior};
 use simgap_model::Location;
 use simgap_simulate::Run;
 
@@ -85,6 +85,8 @@ pub(crate) struct Layout {
     pub(crate) prior_mean: Vec<f64>,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
+    /// Prior of each entry that is a value of an effect, where sizes of its place are known.
+    priors: Vec<Option<(Prior, Parameter)>>,
 }
 
 impl Layout {
@@ -112,6 +114,7 @@ impl Layout {
             prior_mean: vec![],
             lower: vec![],
             upper: vec![],
+            priors: vec![],
         };
         let physical: Vec<Vec<f64>> = start
             .effects
@@ -128,6 +131,7 @@ impl Layout {
             let parameter = &start.effects[e].effect.parameters()[i];
             layout.push_parameter(parameter, value, f64::INFINITY);
             let placed = &start.effects[e];
+            layout.set_prior(problem.prior(placed, i), parameter);
             if freedom.shared_held
                 || placed.effect.is_chosen(i)
                 || turns(placed).is_some_and(|drift| drift.wave.cosine == i)
@@ -152,6 +156,7 @@ impl Layout {
                 let value = start.effects[e].in_record(run).values[i];
                 let parameter = &start.effects[e].effect.parameters()[i];
                 layout.push_parameter(parameter, value, f64::INFINITY);
+                layout.set_prior(problem.prior(&start.effects[e], i), parameter);
             }
             for &scale in &state_scale {
                 layout.push(scale, [f64::NEG_INFINITY, f64::INFINITY]);
@@ -185,6 +190,41 @@ impl Layout {
         self.prior_mean.push(0.0);
         self.lower.push(lower);
         self.upper.push(upper);
+        self.priors.push(None);
+    }
+
+    fn set_prior(&mut self, prior: Option<Prior>, parameter: &Parameter) {
+        if let Some(last) = self.priors.last_mut() {
+            *last = prior.map(|prior| (prior, *parameter));
+        }
+    }
+
+    /// −ln of the prior of an entry at a value, but for a constant, with its derivative and curvature in the value.
+    pub(crate) fn prior_at(&self, entry: usize, value: f64) -> [f64; 3] {
+        if self.is_held(entry) {
+            return [0.0; 3];
+        }
+        let Some((prior, parameter)) = &self.priors[entry] else {
+            let deviation = (value - self.prior_mean[entry]) / self.prior_std[entry];
+            let slope = deviation / self.prior_std[entry];
+            return [0.5 * deviation.powi(2), slope, self.prior_std[entry].powi(-2)];
+        };
+        let local = prior.local(value, parameter);
+        let deviation = (local.coordinate - local.mean) / local.std;
+        let neutral = parameter.neutral.filter(|n| n.is_finite()).unwrap_or(0.0);
+        let sign = match prior {
+            Prior::Size { .. } if value < neutral => -1.0,
+            Prior::Factor { .. } if value < 0.0 => -1.0,
+            _ => 1.0,
+        };
+        // du/dv.
+        let per_value = sign / (local.slope * local.std);
+        let constant = local.std.ln() - local.log_weight;
+        [
+            0.5 * deviation.powi(2) + constant,
+            deviation * per_value,
+            per_value.powi(2),
+        ]
     }
 
     fn push_parameter(&mut self, parameter: &Parameter, value: f64, std: f64) {

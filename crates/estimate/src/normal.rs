@@ -35,9 +35,9 @@ pub(crate) fn normal_equations(
         }
     }
     for i in 0..len {
-        let precision = (layout.scale[i] / layout.prior_std[i]).powi(2);
-        hessian[(i, i)] += precision;
-        gradient[i] -= precision * (theta[i] - layout.prior_mean[i]) / layout.scale[i];
+        let [_, slope, curvature] = layout.prior_at(i, theta[i]);
+        hessian[(i, i)] += curvature * layout.scale[i].powi(2);
+        gradient[i] -= slope * layout.scale[i];
     }
     (hessian, gradient)
 }

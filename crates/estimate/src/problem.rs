@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use simgap_effects::{Family, Placed, catalogue, sites};
-use simgap_model::{Model, OutputKind};
+use simgap_effects::{Family, Placed, Prior, SiteScale, catalogue, sites};
+use simgap_model::{Location, Model, OutputKind};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
 use crate::{Candidate, EstimateError, Whitening};
@@ -20,6 +20,8 @@ pub struct Problem {
     pub substeps: usize,
     /// What discrepancies and sensitivities are filtered with; nothing at first.
     pub whitening: Whitening,
+    /// Typical sizes at places: effects there are fitted under the priors that follow from them, elsewhere without any.
+    pub scales: Vec<(Location, SiteScale)>,
 }
 
 /// How a fit counts what it leaves, and when it stops.
@@ -84,6 +86,7 @@ impl Problem {
             given,
             substeps,
             whitening: Whitening::default(),
+            scales: vec![],
         })
     }
 
@@ -96,6 +99,7 @@ impl Problem {
             given: self.given.clone(),
             substeps: self.substeps,
             whitening: self.whitening.clone(),
+            scales: self.scales.clone(),
         }
     }
 
@@ -153,6 +157,14 @@ impl Problem {
     #[must_use]
     pub fn state_len(&self) -> usize {
         2 * self.model.dof_count()
+    }
+
+    /// The prior of a parameter of an effect; `None` at a place of which no sizes are known.
+    #[must_use]
+    pub fn prior(&self, placed: &Placed, parameter: usize) -> Option<Prior> {
+        let mut scales = self.scales.iter();
+        let (_, scale) = scales.find(|(at, _)| *at == placed.at)?;
+        Some(placed.effect.prior(parameter, scale))
     }
 
     /// Standard deviation of the prior on the values of a nominal parameter, relative to them.

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! (2) is the integral of (1) over the prior N(m, S), with the weight w. M and H are those of the fit
-//! ([`simgap_estimate::Fit::misfit`], [`simgap_estimate::Curvature`]); g is zero where the fit was free and balances the
-//! prior where the fit had one. A direction that the data do not see has H = 0 and costs nothing but the distance of its
+//! ([`simgap_estimate::Fit::misfit`], [`simgap_estimate::Curvature`]); g balances the
+//! prior, under which the fit was made, and is zero for initial states, which had none. A direction that the data do not see has H = 0 and costs nothing but the distance of its
 //! estimate from the mean of the prior; one that they see costs ½ ln(S H). Initial states have a wide prior that is the
 //! same in all sets.
 //!
@@ -35,14 +35,19 @@ pub(crate) enum NominalPrior {
     Stated(f64),
 }
 
-/// ln Z of (2); minus infinity where an effect has vanished, since the set is then a smaller one.
+/// ln Z of (2); minus infinity where an effect has vanished, since the set is then a smaller one, and
+/// where its prior has no support.
 pub(crate) fn log_marginal_likelihood(
     fit: &Fit,
     scale_at: impl Fn(&Location) -> Option<SiteScale>,
     nominal: NominalPrior,
 ) -> f64 {
     let effects = &fit.estimate.effects;
-    if effects.iter().any(has_vanished) {
+    let is_outside = |placed: &Placed| {
+        let scale = scale_at(&placed.at);
+        scale.is_some_and(|scale| !placed.effect.has_support(&placed.values, &scale))
+    };
+    if effects.iter().any(|placed| has_vanished(placed) || is_outside(placed)) {
         return f64::NEG_INFINITY;
     }
     let priors: Option<Vec<Term>> = fit
@@ -96,11 +101,11 @@ fn term(
         Owner::Effect(e, i) => {
             let placed = effects.get(e)?;
             let parameter = placed.effect.parameters().get(i)?;
-            let prior = match nominal {
+            let (prior, is_balanced) = match nominal {
                 NominalPrior::Stated(std) if crate::is_nominal(placed) => {
-                    Prior::Normal { mean: 1.0, std }
+                    (Prior::Normal { mean: 1.0, std }, false)
                 }
-                _ => placed.effect.prior(i, &scale_at(&placed.at)?),
+                _ => (placed.effect.prior(i, &scale_at(&placed.at)?), true),
             };
             let local: LocalPrior = prior.local(value, parameter);
             Some(Term {
@@ -109,7 +114,7 @@ fn term(
                 apart: local.mean - local.coordinate,
                 std: local.std,
                 log_weight: local.log_weight,
-                is_balanced: false,
+                is_balanced,
             })
         }
     }

@@ -15,10 +15,12 @@ use simgap_estimate::EstimateError;
 use crate::candidate_model::{CandidateModel, name, rank, remove};
 use crate::search::Search;
 
-/// Practical relevance: the share of the gap, rms, below which an effect is not worth a name.
-const RELEVANT: f64 = 0.03;
-/// A gap counts at least as this share of the motion: what moves less is not worth a name.
-const LEAST_GAP: f64 = 0.1;
+/// Practical relevance: an effect that closes less than this share of the gap, rms, in every channel is not worth a name;
+const OF_GAP: f64 = 0.015;
+/// nor one that moves every output by less than this share of its motion, rms;
+const OF_MOTION: f64 = 0.003;
+/// nor one that explains less than this share of what is left without it, mean square.
+const OF_REST: f64 = 0.05;
 /// Log odds within which effects cannot be told apart: one to twenty.
 const INDISTINGUISHABLE: f64 = 3.0;
 /// Log odds beyond which a set does not count.
@@ -89,7 +91,10 @@ pub fn model_posterior(
     pool: Vec<CandidateModel>,
     gap: &[f64],
 ) -> Result<ModelPosterior, EstimateError> {
-    let relevance = Relevance::new(search, gap);
+    let relevance = Relevance {
+        gap: gap.to_vec(),
+        motion: search.problem.output_std(),
+    };
     let sets = relevance.keep_relevant(search, pool)?;
     let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
     let odds: Vec<f64> = sets.iter().map(|set| (set.log_posterior() - best).exp()).collect();
@@ -108,24 +113,27 @@ pub fn model_posterior(
 
 /// What is worth a name.
 struct Relevance {
-    /// Gap of each channel.
+    /// Gap of each channel, rms.
     gap: Vec<f64>,
+    /// Motion of each channel, rms.
+    motion: Vec<f64>,
 }
 
 impl Relevance {
-    fn new(search: &Search<'_>, gap: &[f64]) -> Relevance {
-        let channels = gap.iter().zip(search.problem.output_std());
-        Relevance {
-            gap: channels.map(|(gap, std)| gap.max(LEAST_GAP * std)).collect(),
-        }
+    /// Share of the gap that a set closes and another does not, in the channel that profits most.
+    fn closes(&self, with: &CandidateModel, without: &CandidateModel) -> f64 {
+        let channels = closed(with, without).zip(&self.gap);
+        channels.map(|(closed, gap)| closed.sqrt() / gap).fold(0.0, f64::max)
     }
 
-    /// Share of the gap that a set closes and another does not.
-    fn closes(&self, with: &CandidateModel, without: &CandidateModel) -> f64 {
-        let variances = without.fit.variance.iter().zip(&with.fit.variance);
-        let shares = variances.zip(&self.gap);
-        let shares = shares.map(|((poorer, better), gap)| (poorer - better).max(0.0).sqrt() / gap);
-        shares.fold(0.0, f64::max)
+    /// Whether what a set has beyond another is worth a name.
+    fn is_relevant(&self, with: &CandidateModel, without: &CandidateModel) -> bool {
+        let channels = closed(with, without).zip(&without.fit.variance);
+        let mut channels = channels.zip(self.gap.iter().zip(&self.motion));
+        channels.any(|((closed, left), (gap, motion))| {
+            let least = (OF_GAP * gap).max(OF_MOTION * motion);
+            closed > least * least && closed > OF_REST * left
+        })
     }
 
     /// The sets of which every effect is relevant, likeliest first.
@@ -156,7 +164,7 @@ impl Relevance {
                 };
                 // A law beyond a special case of it is held to the same.
                 simpler.extend(search.shrink(&set, i));
-                is_relevant &= simpler.iter().all(|other| self.closes(&set, other) >= RELEVANT);
+                is_relevant &= simpler.iter().all(|other| self.is_relevant(&set, other));
                 for other in simpler {
                     let key = other.key();
                     if kept.iter().chain(&rest).all(|known| known.key() != key) {
@@ -171,6 +179,15 @@ impl Relevance {
         rank(&mut kept);
         Ok(kept)
     }
+}
+
+/// Squared discrepancy of each channel that a set explains and another does not.
+fn closed<'a>(
+    with: &'a CandidateModel,
+    without: &'a CandidateModel,
+) -> impl Iterator<Item = f64> + 'a {
+    let variances = without.fit.variance.iter().zip(&with.fit.variance);
+    variances.map(|(poorer, better)| (poorer - better).max(0.0))
 }
 
 /// Puts a set where it belongs in a ranked list.

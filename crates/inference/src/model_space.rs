@@ -75,6 +75,18 @@ impl ModelSpace {
         }
     }
 
+    /// Typical sizes at every place.
+    #[must_use]
+    pub fn scales(&self) -> Vec<(Location, SiteScale)> {
+        let mut scales: Vec<(Location, SiteScale)> = vec![];
+        for (candidate, scale) in &self.candidates {
+            if scales.iter().all(|(at, _)| *at != candidate.at) {
+                scales.push((candidate.at.clone(), *scale));
+            }
+        }
+        scales
+    }
+
     /// Typical sizes at a place of a candidate.
     #[must_use]
     pub fn scale_at(&self, at: &Location) -> Option<SiteScale> {

@@ -153,7 +153,7 @@ impl Effect for AttachedMode {
 
     /// A lighter one is no mass but a force that dies away, carried by a start kilometres off; one that does not
     /// ring is a force that lags the motion, and no mode; nor does a record show one above half its sample rate.
-    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         values[0] >= LIGHTEST * scale.mass_kg
             && values[1] < 0.5 / scale.time_step_s
             && values[2] < RINGS
@@ -263,7 +263,7 @@ mod tests {
         let nyquist_hz = 0.5 / scale.time_step_s;
         let is_mode = |freq_hz: f64, damping_ratio: f64| {
             let values = [0.1 * scale.mass_kg, freq_hz, damping_ratio, 0.0, 0.0];
-            AttachedMode.keeps_its_meaning(&values, &scale)
+            AttachedMode.has_support(&values, &scale)
         };
         assert!(is_mode(0.9 * nyquist_hz, 0.3));
         assert!(!is_mode(0.9 * nyquist_hz, 1.1));

@@ -105,7 +105,7 @@ impl Effect for BilinearStiffness {
         }))
     }
 
-    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         let [low, high] = scale.displacement_range_m;
         let sides = [scale.stiffness_n_per_m, scale.stiffness_n_per_m + values[0]];
         let (soft, stiff) = (sides[0].min(sides[1]), sides[0].max(sides[1]));

@@ -132,7 +132,7 @@ impl Effect for EndStop {
     }
 
     /// An elastic contact on one side about as soft as the spring of the place is a spring with two slopes.
-    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         let [low, high] = scale.displacement_range_m;
         let both_sides = values[0] < high && -values[1] > low;
         let held = values[3] * scale.velocity_m_per_s > ELASTIC * scale.displacement_m;
@@ -184,7 +184,7 @@ mod tests {
         };
         let [_, high] = scale.displacement_range_m;
         let keeps = |lower: f64, contact: f64, damping_time_s: f64| {
-            EndStop.keeps_its_meaning(&[0.5 * high, lower, contact, damping_time_s], &scale)
+            EndStop.has_support(&[0.5 * high, lower, contact, damping_time_s], &scale)
         };
         assert!(keeps(20.0 * high, 4e4, 0.0) && !keeps(20.0 * high, 2e4, 0.0));
         assert!(keeps(0.5 * high, 2e4, 0.0) && keeps(20.0 * high, 2e4, 1e-3));

@@ -121,7 +121,7 @@ impl Effect for PositionPeriodicForce {
         }))
     }
 
-    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         let [low, high] = scale.displacement_range_m;
         values[2] <= LONGEST * (high - low)
     }

@@ -130,7 +130,7 @@ impl Effect for TimeVaryingStiffness {
         }))
     }
 
-    fn keeps_its_meaning(&self, values: &[f64], scale: &SiteScale) -> bool {
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         values[1] * scale.duration_s >= LEAST_SWING
     }
 
