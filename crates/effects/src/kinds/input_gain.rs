@@ -1,5 +1,7 @@
 //! An input drives the plant with another gain than assumed.
 
+use simgap_model::NominalQuantity;
+
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
 
@@ -41,6 +43,10 @@ impl Effect for InputGain {
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![1.05]]
+    }
+
+    fn nominal_quantity(&self) -> Option<NominalQuantity> {
+        Some(NominalQuantity::InputGain)
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -1,5 +1,7 @@
 //! A sensor reads too much or too little in proportion.
 
+use simgap_model::NominalQuantity;
+
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
 
@@ -51,6 +53,10 @@ impl Effect for SensorGain {
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![1.05]]
+    }
+
+    fn nominal_quantity(&self) -> Option<NominalQuantity> {
+        Some(NominalQuantity::OutputGain)
     }
 
     fn action(&self, values: &[f64]) -> Action {
