@@ -1,7 +1,7 @@
 //! What every effect says of itself.
 
 use simgap_integrate::exact::ForceLaw;
-use simgap_model::{Location, Model};
+use simgap_model::{Location, Model, NominalQuantity};
 
 use crate::prior::{Prior, usual_prior};
 use crate::{Line, SignalMap, Wave};
@@ -360,6 +360,12 @@ pub trait Effect: Sync + Send {
             Family::NominalParameter => EVERYDAY,
             _ => 1.0,
         }
+    }
+
+    /// The nominal value that the effect changes by a factor, whose stated uncertainty is
+    /// [`Model::stated_uncertainty`] at its place; `None` for what no nominal value stands for.
+    fn nominal_quantity(&self) -> Option<NominalQuantity> {
+        None
     }
 
     /// The factor that a nominal parameter is known to, whoever made the model; `None` where that is anyone's guess.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use simgap_effects::{Family, Placed, Prior, SiteScale, catalogue, sites};
-use simgap_model::{Location, Model, OutputKind};
+use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, OutputKind};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
 use crate::{Candidate, EstimateError, Whitening};
@@ -45,8 +45,6 @@ pub struct FitOptions {
     pub most_steps: usize,
 }
 
-/// Relative standard deviation of a nominal value of which the model says nothing.
-const STATED_STD: f64 = 0.02;
 /// Steps of a fit that is to be finished.
 const MOST_STEPS: usize = 25;
 /// Accuracy of a simulation over the standard deviation of a channel, where it was not measured.
@@ -170,8 +168,10 @@ impl Problem {
     /// Standard deviation of the prior on the values of a nominal parameter, relative to them.
     #[must_use]
     pub fn stated_std(&self, placed: &Placed) -> f64 {
-        let _ = placed;
-        STATED_STD
+        let quantity = placed.effect.nominal_quantity();
+        quantity.map_or(DEFAULT_UNCERTAINTY, |quantity| {
+            self.model.stated_uncertainty(quantity, &placed.at)
+        })
     }
 
     /// Every nominal parameter of the model, as catalogue entries at their places.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::uncertainty::LARGEST_UNCERTAINTY;
 use crate::{GROUND, InputKind, Location, Model, ModelError, OutputKind};
 
 impl Model {
@@ -44,6 +45,7 @@ impl Model {
                     needed: "a positive mass",
                 });
             }
+            check_uncertainty(&place, mass.uncertainty)?;
         }
         Ok(())
     }
@@ -55,11 +57,13 @@ impl Model {
             let place = item("spring", &spring.name);
             self.check_pair(&spring.between, &place)?;
             finite(&place, "stiffness", spring.stiffness)?;
+            check_uncertainty(&place, spring.uncertainty)?;
         }
         for damper in &self.dampers {
             let place = item("damper", &damper.name);
             self.check_pair(&damper.between, &place)?;
             finite(&place, "damping", damper.damping)?;
+            check_uncertainty(&place, damper.uncertainty)?;
         }
         Ok(())
     }
@@ -81,6 +85,7 @@ impl Model {
         for input in &self.inputs {
             let place = item("input", &input.channel);
             check_gain(&place, input.gain)?;
+            check_uncertainty(&place, input.uncertainty)?;
             match input.kind {
                 InputKind::Force => self.check_mass(&input.at, &place)?,
                 InputKind::Displacement => node_name(&place, &input.at)?,
@@ -101,6 +106,7 @@ impl Model {
         for output in &self.outputs {
             let place = item("output", &output.channel);
             check_gain(&place, output.gain)?;
+            check_uncertainty(&place, output.uncertainty)?;
             let force = output.kind == OutputKind::Force;
             match (&output.at, &output.between) {
                 (Some(at), None) if !force => {
@@ -125,11 +131,13 @@ impl Model {
             let place = item("load", &load.at);
             self.check_mass(&load.at, &place)?;
             finite(&place, "value", load.value)?;
+            check_uncertainty(&place, load.uncertainty)?;
         }
         for pendulum in &self.pendulums {
             let place = item("pendulum", &pendulum.at);
             self.check_mass(&pendulum.at, &place)?;
             finite(&place, "value", pendulum.value)?;
+            check_uncertainty(&place, pendulum.uncertainty)?;
         }
         Ok(())
     }
@@ -227,6 +235,18 @@ fn check_gain(place: &str, gain: Option<f64>) -> Result<(), ModelError> {
             quantity: "gain".into(),
             found: value,
             needed: "a finite number that is not zero",
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn check_uncertainty(place: &str, uncertainty: Option<f64>) -> Result<(), ModelError> {
+    match uncertainty {
+        Some(value) if !(value > 0.0 && value <= LARGEST_UNCERTAINTY) => Err(ModelError::Value {
+            place: place.into(),
+            quantity: "uncertainty".into(),
+            found: value,
+            needed: "a relative standard deviation above 0, up to 10",
         }),
         _ => Ok(()),
     }

@@ -47,6 +47,7 @@ mod model;
 mod modes;
 mod parts;
 mod travel;
+mod uncertainty;
 
 pub use error::ModelError;
 pub use file::SCHEMA;
@@ -58,3 +59,4 @@ pub use parts::{
     Damper, EffectEntry, GROUND, Input, InputKind, Load, Location, Mass, Output, OutputKind,
     Pendulum, Spring,
 };
+pub use uncertainty::{DEFAULT_UNCERTAINTY, NominalQuantity};

@@ -5,6 +5,9 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+#[cfg(doc)]
+use crate::DEFAULT_UNCERTAINTY;
+
 /// The node that never moves.
 pub const GROUND: &str = "ground";
 
@@ -16,6 +19,9 @@ pub struct Mass {
     pub name: String,
     /// kg or kg m², positive.
     pub value: f64,
+    /// How well the value is known: relative standard deviation; [`DEFAULT_UNCERTAINTY`] where none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 /// A linear spring: force `k (x_a − x_b)` between two nodes.
@@ -28,6 +34,9 @@ pub struct Spring {
     pub between: [String; 2],
     /// k, N/m or N m/rad.
     pub stiffness: f64,
+    /// How well the stiffness is known: relative standard deviation; [`DEFAULT_UNCERTAINTY`] where none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 /// A linear damper: force `c (v_a − v_b)` between two nodes.
@@ -40,6 +49,9 @@ pub struct Damper {
     pub between: [String; 2],
     /// c, N s/m or N m s/rad.
     pub damping: f64,
+    /// How well the damping is known: relative standard deviation; [`DEFAULT_UNCERTAINTY`] where none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 /// What an input channel prescribes.
@@ -65,6 +77,9 @@ pub struct Input {
     /// Model unit per unit of the channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<f64>,
+    /// How well the gain is known: relative standard deviation; [`DEFAULT_UNCERTAINTY`] where none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 /// What an output channel measures.
@@ -98,6 +113,9 @@ pub struct Output {
     /// Model unit per unit of the channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<f64>,
+    /// How well the gain is known: relative standard deviation; [`DEFAULT_UNCERTAINTY`] where none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 /// A known constant force, N, such as weight.
@@ -108,6 +126,9 @@ pub struct Load {
     pub at: String,
     /// N or N m.
     pub value: f64,
+    /// How well the value is known: relative standard deviation; [`DEFAULT_UNCERTAINTY`] where none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 /// Gravity on an arm: torque `−value sin(angle)`.
@@ -118,6 +139,9 @@ pub struct Pendulum {
     pub at: String,
     /// m g l, N m.
     pub value: f64,
+    /// How well the value is known: relative standard deviation; [`DEFAULT_UNCERTAINTY`] where none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 /// Where in the plant or in the measurement chain something sits.

@@ -74,6 +74,14 @@ fn regress_messages() {
             "base is a mass",
             with("[[input]]\nchannel = \"u\"\nkind = \"displacement\"\nat = \"a\"\n"),
         ),
+        (
+            "uncertainty of zero",
+            with("[[load]]\nat = \"a\"\nvalue = 1.0\nuncertainty = 0.0\n"),
+        ),
+        (
+            "uncertainty in percent",
+            with("[[pendulum]]\nat = \"a\"\nvalue = 1.0\nuncertainty = 20.0\n"),
+        ),
         ("nan", with("[[load]]\nat = \"a\"\nvalue = nan\n")),
         (
             "effect without place",
@@ -112,9 +120,9 @@ fn verify_legal_oddities() {
 #[test]
 fn prop_text_round_trip() {
     let text = with(
-        "[[spring]]\nname = \"s\"\nbetween = [\"a\", \"base\"]\nstiffness = 0.1\n\
-         [[input]]\nchannel = \"u\"\nkind = \"displacement\"\nat = \"base\"\ngain = 2.5\n\
-         [[pendulum]]\nat = \"a\"\nvalue = 0.48\n[[load]]\nat = \"a\"\nvalue = -3.0\n\
+        "[[spring]]\nname = \"s\"\nbetween = [\"a\", \"base\"]\nstiffness = 0.1\nuncertainty = 0.3\n\
+         [[input]]\nchannel = \"u\"\nkind = \"displacement\"\nat = \"base\"\ngain = 2.5\nuncertainty = 0.05\n\
+         [[pendulum]]\nat = \"a\"\nvalue = 0.48\nuncertainty = 0.1\n[[load]]\nat = \"a\"\nvalue = -3.0\n\
          [[effect]]\nkind = \"coulomb_friction\"\nbetween = [\"a\", \"ground\"]\nfriction_force_n = 2100\n",
     );
     let model = Model::from_toml(&text).unwrap();
@@ -123,6 +131,31 @@ fn prop_text_round_trip() {
         model.effects[0].at,
         Location::Between(["a".into(), "ground".into()])
     );
+    assert_eq!(model.springs[0].uncertainty, Some(0.3));
+    assert_eq!(model.loads[0].uncertainty, None);
     let again = Model::from_toml(&model.to_toml().unwrap()).unwrap();
     assert_eq!(model, again);
+}
+
+#[test]
+fn verify_uncertainty_is_checked_in_every_table() {
+    let tables = [
+        "[[mass]]\nname = \"b\"\nvalue = 1.0",
+        "[[spring]]\nname = \"s\"\nbetween = [\"a\", \"ground\"]\nstiffness = 1.0",
+        "[[damper]]\nname = \"d\"\nbetween = [\"a\", \"ground\"]\ndamping = 1.0",
+        "[[input]]\nchannel = \"u\"\nkind = \"force\"\nat = \"a\"",
+        "[[output]]\nchannel = \"z\"\nkind = \"velocity\"\nat = \"a\"",
+        "[[load]]\nat = \"a\"\nvalue = 1.0",
+        "[[pendulum]]\nat = \"a\"\nvalue = 1.0",
+    ];
+    for table in tables {
+        let stated = |value: &str| with(&format!("{table}\nuncertainty = {value}\n"));
+        for legal in ["1e-6", "0.02", "10.0"] {
+            Model::from_toml(&stated(legal)).unwrap();
+        }
+        for wrong in ["0.0", "-0.1", "10.1", "nan", "inf"] {
+            let line = refused(&stated(wrong));
+            assert!(line.contains("uncertainty"), "{table}: {line}");
+        }
+    }
 }

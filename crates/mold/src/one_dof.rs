@@ -133,22 +133,26 @@ impl OneDof {
             masses: vec![Mass {
                 name: mold(),
                 value: self.mass_kg,
+                uncertainty: None,
             }],
             springs: vec![Spring {
                 name: "cylinder".to_owned(),
                 between: to_ground(),
                 stiffness: self.stiffness,
+                uncertainty: None,
             }],
             dampers: vec![Damper {
                 name: "cylinder".to_owned(),
                 between: to_ground(),
                 damping: self.damping(),
+                uncertainty: None,
             }],
             inputs: vec![pressure_input()],
             outputs: vec![displacement_output()],
             loads: vec![Load {
                 at: mold(),
                 value: -self.mass_kg * STANDARD_GRAVITY,
+                uncertainty: None,
             }],
             ..Model::default()
         };
@@ -164,6 +168,7 @@ pub(crate) fn pressure_input() -> Input {
         kind: InputKind::Force,
         at: "mold".to_owned(),
         gain: None,
+        uncertainty: None,
     }
 }
 
@@ -175,5 +180,6 @@ pub(crate) fn displacement_output() -> Output {
         at: Some("mold".to_owned()),
         between: None,
         gain: None,
+        uncertainty: None,
     }
 }

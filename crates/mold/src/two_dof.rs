@@ -164,6 +164,7 @@ impl TwoDof {
             name: name.to_owned(),
             between: [a.to_owned(), b.to_owned()],
             stiffness,
+            uncertainty: None,
         };
         let model = Model {
             name: "mold-2dof".to_owned(),
@@ -176,10 +177,12 @@ impl TwoDof {
                 Mass {
                     name: mold,
                     value: self.mold_mass_kg,
+                    uncertainty: None,
                 },
                 Mass {
                     name: support,
                     value: self.support_mass_kg,
+                    uncertainty: None,
                 },
             ],
             inputs: vec![pressure_input()],

@@ -56,6 +56,7 @@ pub(super) fn mold(random: &mut Random) -> (Model, Sizes) {
         model.loads.push(Load {
             at: "mold".to_string(),
             value: -mass_kg * GRAVITY,
+            uncertainty: None,
         });
     }
     (model, sizes)
@@ -145,6 +146,7 @@ pub(super) fn pendulum(random: &mut Random) -> (Model, Sizes) {
         pendulums: vec![Pendulum {
             at: "arm".to_string(),
             value: torque,
+            uncertainty: None,
         }],
         ..Model::default()
     };

@@ -12,6 +12,7 @@ pub(super) fn mass(name: &str, value: f64) -> Mass {
     Mass {
         name: name.to_string(),
         value,
+        uncertainty: None,
     }
 }
 
@@ -20,6 +21,7 @@ pub(super) fn spring(a: &str, b: &str, stiffness: f64) -> Spring {
         name: format!("{a} {b}"),
         between: pair(a, b),
         stiffness,
+        uncertainty: None,
     }
 }
 
@@ -28,6 +30,7 @@ pub(super) fn dashpot(a: &str, b: &str, damping: f64) -> Damper {
         name: format!("{a} {b}"),
         between: pair(a, b),
         damping,
+        uncertainty: None,
     }
 }
 
@@ -37,6 +40,7 @@ pub(super) fn input(kind: InputKind, at: &str) -> Input {
         kind,
         at: at.to_string(),
         gain: None,
+        uncertainty: None,
     }
 }
 
@@ -47,6 +51,7 @@ pub(super) fn output(number: usize, kind: OutputKind, at: &str) -> Output {
         at: Some(at.to_string()),
         between: None,
         gain: None,
+        uncertainty: None,
     }
 }
 
@@ -67,5 +72,6 @@ pub(super) fn load_cell(number: usize, a: &str, b: &str) -> Output {
         at: None,
         between: Some(pair(a, b)),
         gain: None,
+        uncertainty: None,
     }
 }

@@ -160,6 +160,7 @@ fn model(pairing: &Pairing) -> Model {
             kind: InputKind::Displacement,
             at: node.clone(),
             gain,
+            uncertainty: None,
         });
         model.outputs.push(Output {
             channel: trace.channel.clone(),
@@ -167,6 +168,7 @@ fn model(pairing: &Pairing) -> Model {
             at: Some(node),
             between: None,
             gain,
+            uncertainty: None,
         });
     }
     model

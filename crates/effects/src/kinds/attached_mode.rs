@@ -50,17 +50,20 @@ fn attach(model: &mut Model, at: &Location, [mass, freq_hz, damping_ratio]: [f64
     model.masses.push(Mass {
         name: name.clone(),
         value: mass,
+        uncertainty: None,
     });
     // (2)
     model.springs.push(Spring {
         name: name.clone(),
         between: between.clone(),
         stiffness: mass * omega * omega,
+        uncertainty: None,
     });
     model.dampers.push(Damper {
         name,
         between,
         damping: 2.0 * damping_ratio * mass * omega,
+        uncertainty: None,
     });
 }
 

@@ -1,6 +1,6 @@
 //! The dampers between two nodes differ from their nominal damping by a factor.
 
-use simgap_model::{Location, same_pair};
+use simgap_model::{Location, NominalQuantity, same_pair};
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -34,6 +34,10 @@ impl Effect for DampingError {
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![1.05]]
+    }
+
+    fn nominal_quantity(&self) -> Option<NominalQuantity> {
+        Some(NominalQuantity::Damping)
     }
 
     fn action(&self, values: &[f64]) -> Action {

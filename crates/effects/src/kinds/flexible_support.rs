@@ -62,17 +62,20 @@ fn stand(model: &mut Model, at: &Location, [mass, stiffness, damping_ratio]: [f6
     model.masses.push(Mass {
         name: name.clone(),
         value: mass,
+        uncertainty: None,
     });
     model.springs.push(Spring {
         name: name.clone(),
         between: between.clone(),
         stiffness,
+        uncertainty: None,
     });
     // (2)
     model.dampers.push(Damper {
         name,
         between,
         damping: 2.0 * damping_ratio * (stiffness * mass).sqrt(),
+        uncertainty: None,
     });
 }
 

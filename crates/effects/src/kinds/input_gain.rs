@@ -1,5 +1,6 @@
 //! An input drives the plant with another gain than assumed.
 
+use simgap_model::NominalQuantity;
 use crate::Prior;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
@@ -51,6 +52,10 @@ impl Effect for InputGain {
 
     fn prior(&self, _: usize, _: &SiteScale) -> Prior {
         Prior::gain()
+    }
+
+    fn nominal_quantity(&self) -> Option<NominalQuantity> {
+        Some(NominalQuantity::InputGain)
     }
 
     fn action(&self, values: &[f64]) -> Action {

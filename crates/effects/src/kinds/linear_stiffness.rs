@@ -55,6 +55,7 @@ impl Effect for LinearStiffness {
                     name: format!("linear_stiffness {}", model.springs.len() + 1),
                     between: between.clone(),
                     stiffness,
+                    uncertainty: None,
                 });
             }
         }))

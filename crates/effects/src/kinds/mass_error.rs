@@ -1,6 +1,6 @@
 //! A mass differs from its nominal value by a factor.
 
-use simgap_model::Location;
+use simgap_model::{Location, NominalQuantity};
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
@@ -37,6 +37,10 @@ impl Effect for MassError {
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![1.05]]
+    }
+
+    fn nominal_quantity(&self) -> Option<NominalQuantity> {
+        Some(NominalQuantity::Mass)
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -1,5 +1,6 @@
 //! A sensor reads too much or too little in proportion.
 
+use simgap_model::NominalQuantity;
 use crate::Prior;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
@@ -56,6 +57,10 @@ impl Effect for SensorGain {
 
     fn prior(&self, _: usize, _: &SiteScale) -> Prior {
         Prior::gain()
+    }
+
+    fn nominal_quantity(&self) -> Option<NominalQuantity> {
+        Some(NominalQuantity::OutputGain)
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -55,6 +55,7 @@ impl Effect for ViscousDamping {
                     name: format!("viscous_damping {}", model.dampers.len() + 1),
                     between: between.clone(),
                     damping,
+                    uncertainty: None,
                 });
             }
         }))

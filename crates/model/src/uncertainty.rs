@@ -1,0 +1,181 @@
+//! How well the nominal values are known.
+
+use crate::{Location, Model, same_pair};
+
+/// Relative standard deviation of a nominal value whose part states no `uncertainty`.
+pub const DEFAULT_UNCERTAINTY: f64 = 0.02;
+
+/// Largest relative standard deviation that a part may state.
+pub(crate) const LARGEST_UNCERTAINTY: f64 = 10.0;
+
+/// A kind of nominal value, by the place where parts of that kind add up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum NominalQuantity {
+    /// Mass or inertia, at [`Location::Mass`].
+    Mass,
+    /// Stiffness of the springs, at [`Location::Between`].
+    Stiffness,
+    /// Damping of the dampers, at [`Location::Between`].
+    Damping,
+    /// Torque of the pendulums, at [`Location::Mass`].
+    Pendulum,
+    /// Known constant forces, at [`Location::Mass`].
+    Load,
+    /// Gain of an input, at [`Location::Input`].
+    InputGain,
+    /// Gain of an output, at [`Location::Channel`].
+    OutputGain,
+}
+
+impl Model {
+    /// Relative standard deviation of a nominal value: of the sum of its parts, whose errors are
+    /// independent of each other.
+    ///
+    /// ```text
+    /// s = sqrt(Σ (kᵢ uᵢ)²) / |Σ kᵢ|
+    /// ```
+    ///
+    /// | Symbol | Meaning | Unit |
+    /// |---|---|---|
+    /// | kᵢ | value of the i-th part of this kind at the place; 1 for a gain, which has one part | of the part |
+    /// | uᵢ | its `uncertainty`, [`DEFAULT_UNCERTAINTY`] where none is stated | 1 |
+    ///
+    /// At most 10, the largest that can be stated, where parts of opposite sign cancel; the default
+    /// where the model has no such part or all of them are zero.
+    ///
+    /// ```
+    /// use simgap_model::{Location, Model, NominalQuantity};
+    /// let model = Model::from_toml(r#"
+    /// schema = "simgap-model/1"
+    /// name = "axis"
+    /// [[mass]]
+    /// name = "carriage"
+    /// value = 95.0
+    /// uncertainty = 0.1
+    /// [[output]]
+    /// channel = "q"
+    /// kind = "displacement"
+    /// at = "carriage"
+    /// "#)?;
+    /// let carriage = Location::Mass("carriage".into());
+    /// assert!((model.stated_uncertainty(NominalQuantity::Mass, &carriage) - 0.1).abs() < 1e-15);
+    /// # Ok::<(), simgap_model::ModelError>(())
+    /// ```
+    #[must_use]
+    pub fn stated_uncertainty(&self, quantity: NominalQuantity, at: &Location) -> f64 {
+        let (mut sum, mut variance) = (0.0, 0.0_f64);
+        for (value, uncertainty) in self.nominal_parts(quantity, at) {
+            let deviation = value * uncertainty.unwrap_or(DEFAULT_UNCERTAINTY);
+            sum += value;
+            variance += deviation * deviation;
+        }
+        if variance == 0.0 {
+            return DEFAULT_UNCERTAINTY;
+        }
+        (variance.sqrt() / f64::abs(sum)).min(LARGEST_UNCERTAINTY)
+    }
+
+    /// Value and stated uncertainty of each part of a kind at a place.
+    fn nominal_parts(&self, quantity: NominalQuantity, at: &Location) -> Vec<(f64, Option<f64>)> {
+        use NominalQuantity as Q;
+        match (quantity, at) {
+            (Q::Mass, Location::Mass(name)) => {
+                let here = self.masses.iter().filter(|mass| &mass.name == name);
+                here.map(|mass| (mass.value, mass.uncertainty)).collect()
+            }
+            (Q::Stiffness, Location::Between(pair)) => {
+                let here = self.springs.iter();
+                here.filter(|spring| same_pair(&spring.between, pair))
+                    .map(|spring| (spring.stiffness, spring.uncertainty))
+                    .collect()
+            }
+            (Q::Damping, Location::Between(pair)) => {
+                let here = self.dampers.iter();
+                here.filter(|damper| same_pair(&damper.between, pair))
+                    .map(|damper| (damper.damping, damper.uncertainty))
+                    .collect()
+            }
+            (Q::Pendulum, Location::Mass(name)) => {
+                let here = self.pendulums.iter().filter(|arm| &arm.at == name);
+                here.map(|arm| (arm.value, arm.uncertainty)).collect()
+            }
+            (Q::Load, Location::Mass(name)) => {
+                let here = self.loads.iter().filter(|load| &load.at == name);
+                here.map(|load| (load.value, load.uncertainty)).collect()
+            }
+            (Q::InputGain, Location::Input(channel)) => {
+                let here = self.inputs.iter().filter(|one| &one.channel == channel);
+                here.map(|input| (1.0, input.uncertainty)).collect()
+            }
+            (Q::OutputGain, Location::Channel(channel)) => {
+                let here = self.outputs.iter().filter(|one| &one.channel == channel);
+                here.map(|output| (1.0, output.uncertainty)).collect()
+            }
+            _ => vec![],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PARTS: &str = "schema = \"simgap-model/1\"\nname = \"m\"\n\
+        [[mass]]\nname = \"a\"\nvalue = 2.0\nuncertainty = 0.5\n\
+        [[spring]]\nname = \"s\"\nbetween = [\"a\", \"ground\"]\nstiffness = 300.0\nuncertainty = 0.1\n\
+        [[spring]]\nname = \"t\"\nbetween = [\"ground\", \"a\"]\nstiffness = 100.0\nuncertainty = 0.4\n\
+        [[damper]]\nname = \"d\"\nbetween = [\"a\", \"ground\"]\ndamping = 5.0\n\
+        [[damper]]\nname = \"e\"\nbetween = [\"a\", \"ground\"]\ndamping = 5.0\n\
+        [[load]]\nat = \"a\"\nvalue = 3.0\n\
+        [[load]]\nat = \"a\"\nvalue = -3.0\n\
+        [[pendulum]]\nat = \"a\"\nvalue = 0.0\nuncertainty = 0.3\n\
+        [[input]]\nchannel = \"u\"\nkind = \"force\"\nat = \"a\"\nuncertainty = 0.07\n\
+        [[output]]\nchannel = \"y\"\nkind = \"displacement\"\nat = \"a\"\n";
+
+    fn stated(quantity: NominalQuantity, at: Location) -> f64 {
+        Model::from_toml(PARTS)
+            .unwrap()
+            .stated_uncertainty(quantity, &at)
+    }
+
+    #[test]
+    fn verify_independent_parts_add_their_variances() {
+        const ROUNDING: f64 = 1e-15;
+        let pair = || Location::Between(["a", "ground"].map(String::from));
+        let mass = || Location::Mass("a".into());
+        let cases = [
+            (NominalQuantity::Mass, mass(), 0.5),
+            // 30 and 40 N/m of 400.
+            (NominalQuantity::Stiffness, pair(), 50.0 / 400.0),
+            // Two equal dampers, known by the default.
+            (
+                NominalQuantity::Damping,
+                pair(),
+                DEFAULT_UNCERTAINTY / 2.0_f64.sqrt(),
+            ),
+            // Parts that cancel, and a part of zero.
+            (NominalQuantity::Load, mass(), LARGEST_UNCERTAINTY),
+            (NominalQuantity::Pendulum, mass(), DEFAULT_UNCERTAINTY),
+            (
+                NominalQuantity::InputGain,
+                Location::Input("u".into()),
+                0.07,
+            ),
+            (
+                NominalQuantity::OutputGain,
+                Location::Channel("y".into()),
+                DEFAULT_UNCERTAINTY,
+            ),
+            // No such part at the place.
+            (
+                NominalQuantity::Mass,
+                Location::Input("u".into()),
+                DEFAULT_UNCERTAINTY,
+            ),
+        ];
+        for (quantity, at, expected) in cases {
+            let found = stated(quantity, at);
+            assert!((found - expected).abs() < ROUNDING, "{quantity:?}: {found}");
+        }
+    }
+}
