@@ -9,7 +9,7 @@ use simgap_inference::CandidateModel;
 use simgap_inference::noise_model::{accuracy, input_noise};
 use simgap_simulate::{MemberPath, Run, substeps_for};
 
-use crate::excerpt::Excerpt;
+use crate::excerpt::excerpts;
 use crate::gap::{Prediction, gap, predict, total};
 use crate::multi_step::contradicts;
 use crate::spread::spread_of_check;
@@ -151,7 +151,8 @@ impl<'a> Check<'a> {
 
     /// What single sets leave of excerpts of the check records.
     pub(crate) fn held_back(&self, sets: &[&CandidateModel]) -> Result<Vec<f64>, EstimateError> {
-        let short = self.problem.with_runs(Excerpt::of(&self.problem.runs).runs);
+        let nothing = vec![vec![]; self.problem.runs.len()];
+        let short = self.problem.with_runs(excerpts(&self.problem.runs, &nothing));
         sets.par_iter()
             .map(|set| {
                 let placed: Vec<Placed> = set.fit.estimate.placed().cloned().collect();

@@ -1,124 +1,119 @@
 //! The part of long records that is searched in.
 //!
-//! Laws are told apart by motions of different size: of each long record the stretch of most energy and the one of least
-//! are taken, in equal parts, each with an initial state of its own.
+//! Where every input and everything that re-estimated parameters leave is smooth from sample to sample, every few samples
+//! say as much as all of them: the whole of each record is searched in, at a lower rate. Elsewhere the stretch of most
+//! energy of each record is.
 
-use simgap_estimate::Start;
 use simgap_simulate::Run;
 
 /// Samples the search may use; more make it slower, not wiser.
 const SEARCH_SAMPLES: usize = 12_000;
+/// What straight lines between the samples of a lower rate may miss, rms: of an input over its motion, and of what is left.
+const MISSED: [f64; 2] = [0.01, 0.1];
 
-/// Stretches of records.
-pub(crate) struct Excerpt {
-    /// The stretches.
-    pub(crate) runs: Vec<Run>,
-    /// The record of each.
-    record: Vec<usize>,
+/// The runs to search in, given what re-estimated parameters leave of each channel of each.
+pub(crate) fn excerpts(runs: &[Run], left: &[Vec<Vec<f64>>]) -> Vec<Run> {
+    let total: usize = runs.iter().map(|run| run.len).sum();
+    if total <= SEARCH_SAMPLES {
+        return runs.to_vec();
+    }
+    // An odd number of samples: even and odd ones still alternate.
+    let stride = total.div_ceil(SEARCH_SAMPLES) | 1;
+    let is_smooth = |run: &Run, left: &Vec<Vec<f64>>| {
+        let [of_input, of_rest] = MISSED;
+        run.inputs.iter().all(|input| missed(input, stride) < of_input)
+            && left.iter().all(|rest| missed(rest, stride) < of_rest)
+    };
+    if runs.iter().zip(left).all(|(run, left)| is_smooth(run, left)) {
+        return runs.iter().map(|run| thinned(run, stride)).collect();
+    }
+    let share = SEARCH_SAMPLES as f64 / total as f64;
+    runs.iter()
+        .map(|run| {
+            let len = ((run.len as f64 * share) as usize).clamp(1, run.len);
+            let start = most_energetic(run, len);
+            run.slice(start..start + len)
+        })
+        .collect()
 }
 
-impl Excerpt {
-    /// Whole records where they are short.
-    pub(crate) fn of(records: &[Run]) -> Excerpt {
-        let total: usize = records.iter().map(|run| run.len).sum();
-        let share = SEARCH_SAMPLES as f64 / total.max(1) as f64;
-        let mut excerpt = Excerpt {
-            runs: vec![],
-            record: vec![],
-        };
-        for (index, run) in records.iter().enumerate() {
-            let stretches = match share < 1.0 {
-                true => stretches(run, share),
-                false => vec![run.clone()],
-            };
-            excerpt.record.extend(stretches.iter().map(|_| index));
-            excerpt.runs.extend(stretches);
-        }
-        excerpt
-    }
-
-    /// What was fitted to the stretches, with the values of each record's first stretch as those of the record.
-    pub(crate) fn to_records(&self, found: &Start) -> Start {
-        let firsts: Vec<usize> = (0..self.record.len())
-            .filter(|&k| k == 0 || self.record[k] != self.record[k - 1])
-            .collect();
-        let of_firsts = |list: &[Vec<f64>]| -> Vec<Vec<f64>> {
-            let each = firsts.iter();
-            each.filter_map(|k| list.get(*k).cloned()).collect()
-        };
-        let mut start = found.clone();
-        for placed in start.effects.iter_mut().chain(&mut start.nominal) {
-            placed.of_record = of_firsts(&placed.of_record);
-        }
-        start.initial = of_firsts(&found.initial);
-        start
+/// Every few samples of a run.
+fn thinned(run: &Run, stride: usize) -> Run {
+    let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
+    Run {
+        time_step_s: stride as f64 * run.time_step_s,
+        len: run.len.div_ceil(stride),
+        inputs: run.inputs.iter().map(|input| thin(input)).collect(),
+        measured: run.measured.iter().map(|m| m.as_deref().map(thin)).collect(),
+        ..run.clone()
     }
 }
 
-/// The stretch of most energy and the one of least, in the order of time; one stretch where these overlap.
-fn stretches(run: &Run, share: f64) -> Vec<Run> {
-    let half = ((0.5 * run.len as f64 * share) as usize).clamp(1, run.len);
-    let sums = sums_of_energy(run);
-    let energy = |start: &usize| sums[start + half] - sums[*start];
-    let all = 0..=(run.len - half);
-    let by_energy = |a: &usize, b: &usize| energy(a).total_cmp(&energy(b));
-    let most = all.clone().max_by(by_energy).unwrap_or(0);
-    let apart = all.filter(|start| start.abs_diff(most) >= half);
-    match apart.min_by(by_energy) {
-        Some(least) => {
-            let (first, last) = (most.min(least), most.max(least));
-            [first, last].map(|start| run.slice(start..start + half)).into()
-        }
-        None => {
-            let start = most.min(run.len.saturating_sub(2 * half));
-            vec![run.slice(start..(start + 2 * half).min(run.len))]
+/// What straight lines between every few samples miss of a signal, rms, over the rms about its mean.
+fn missed(signal: &[f64], stride: usize) -> f64 {
+    let mean = signal.iter().sum::<f64>() / signal.len().max(1) as f64;
+    let (mut apart, mut all) = (0.0, 0.0);
+    for part in signal.windows(stride + 1).step_by(stride) {
+        let (first, last) = (part[0], part[stride]);
+        for (k, value) in part.iter().take(stride).enumerate() {
+            let line = first + (last - first) * k as f64 / stride as f64;
+            apart += (value - line).powi(2);
+            all += (value - mean).powi(2);
         }
     }
+    if all > 0.0 { (apart / all).sqrt() } else { 0.0 }
 }
 
-/// Running sums of the squared outputs about their means, each output by its variance.
-fn sums_of_energy(run: &Run) -> Vec<f64> {
+fn most_energetic(run: &Run, len: usize) -> usize {
     let mut energy = vec![0.0; run.len];
     for values in run.measured.iter().flatten() {
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
         let scale: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
         for (sum, value) in energy.iter_mut().zip(values) {
-            *sum += (value - mean) * (value - mean) / scale.max(f64::MIN_POSITIVE);
+            *sum += (value - mean) * (value - mean) / scale;
         }
     }
-    let mut sums = vec![0.0; run.len + 1];
-    for (n, energy) in energy.iter().enumerate() {
-        sums[n + 1] = sums[n] + energy;
+    let mut window: f64 = energy[..len].iter().sum();
+    let (mut best, mut at) = (window, 0);
+    for start in 1..=(run.len - len) {
+        window += energy[start + len - 1] - energy[start - 1];
+        if window > best {
+            (best, at) = (window, start);
+        }
     }
-    sums
+    at
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn run(values: Vec<f64>) -> Run {
+    fn run(len: usize, value: impl Fn(f64) -> f64) -> Run {
         Run {
             name: "a".into(),
             start_s: 0.0,
-            time_step_s: 1.0,
-            len: values.len(),
+            time_step_s: 0.001,
+            len,
             first_index: 0,
             inputs: vec![],
-            measured: vec![Some(values)],
+            measured: vec![Some((0..len).map(|n| value(0.001 * n as f64)).collect())],
         }
     }
 
+    fn found(run: &Run, left: impl Fn(f64) -> f64) -> Run {
+        let left = (0..run.len).map(|n| left(0.001 * n as f64)).collect();
+        excerpts(std::slice::from_ref(run), &[vec![left]]).swap_remove(0)
+    }
+
     #[test]
-    fn long_records_give_their_largest_and_their_smallest_motion() {
-        let sign = |n: usize| if n.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let decay = |n: usize| sign(n) * (-1e-4 * n as f64).exp();
-        let long = run((0..30_000).map(decay).collect());
-        let found = Excerpt::of(&[long.clone(), run(vec![1.0, -1.0, 0.5])]);
-        assert_eq!(found.record, [0, 0, 1]);
-        assert_eq!(found.runs[0].first_index, 0);
-        assert!(found.runs[1].first_index + found.runs[1].len >= 29_990);
-        let whole = Excerpt::of(&[run(vec![1.0, -1.0, 0.5])]);
-        assert_eq!((whole.runs.len(), whole.runs[0].len), (1, 3));
+    fn what_is_smooth_is_searched_whole_at_a_lower_rate() {
+        let decay = run(30_000, |t| (-0.1 * t).exp() * (7.0 * t).sin());
+        let smooth = found(&decay, |t| 0.1 * (7.0 * t).cos());
+        assert_eq!((smooth.len, smooth.time_step_s), (10_000, 0.003));
+        // A line near half the sample rate is lost at a lower one.
+        let rough = found(&decay, |t| 0.1 * (3000.0 * t).cos());
+        assert_eq!((rough.len, rough.time_step_s, rough.first_index), (12_000, 0.001, 0));
+        let short = run(2000, |t| t.sin());
+        assert_eq!(found(&short, |t| t).len, 2000);
     }
 }

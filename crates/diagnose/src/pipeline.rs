@@ -15,7 +15,7 @@ use simgap_record::{Defect, QualityFinding, Record};
 
 use crate::check::Check;
 use crate::data::{Data, divide};
-use crate::excerpt::Excerpt;
+use crate::excerpt::excerpts;
 use crate::decide::{Decision, decide};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::final_fit::fit_to_all;
@@ -78,8 +78,6 @@ pub(crate) struct Prepared {
     pub(crate) train: Problem,
     /// The part of them that is searched in.
     pub(crate) excerpt: Problem,
-    /// How it lies in them.
-    pub(crate) stretches: Excerpt,
     /// The model as given.
     pub(crate) nominal: Fit,
     /// With its nominal parameters re-estimated.
@@ -131,9 +129,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     progress("final fit");
     let final_options = noise.final_options();
     let as_given = &prepared.nominal.estimate.initial;
-    let found = prepared.stretches.to_records(decision.start());
+    let found = decision.start();
     let excerpt = &prepared.excerpt;
-    let estimate = fit_to_all(&prepared.train, excerpt, &found, as_given, &final_options)?;
+    let estimate = fit_to_all(&prepared.train, excerpt, found, as_given, &final_options)?;
     finish(request, &data, &prepared, decision, estimate, &final_options, progress, stopped_early)
 }
 
@@ -178,12 +176,10 @@ fn prepare(request: &Request<'_>, data: &Data) -> Result<Prepared, DiagnoseError
         ..options
     };
     let recalibrated = fit(&train, &start, &loose)?;
-    let stretches = Excerpt::of(&train.runs);
-    let excerpt = train.with_runs(stretches.runs.clone());
+    let excerpt = train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy));
     Ok(Prepared {
         train,
         excerpt,
-        stretches,
         nominal,
         recalibrated,
         parameters,

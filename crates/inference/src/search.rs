@@ -26,6 +26,8 @@ const REFITTED: usize = 16;
 /// Candidates fitted in the place of each effect of the best set, and beside it.
 const EXCHANGED: usize = 8;
 const ADDED: usize = 4;
+/// Effects of a set at the most.
+const MOST_EFFECTS: usize = 3;
 /// Rounds of changes to the best set.
 const ROUNDS: usize = 4;
 
@@ -115,7 +117,8 @@ impl<'a> Search<'a> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        Ok((self.budget.is_spent)() || self.best_gain(best)? < self.space.price())
+        let is_full = best.effects().len() >= MOST_EFFECTS;
+        Ok(is_full || (self.budget.is_spent)() || self.best_gain(best)? < self.space.price())
     }
 
     /// Sets of none to three effects, best first.
@@ -188,7 +191,9 @@ impl<'a> Search<'a> {
                 return Ok(());
             };
             (self.budget.progress)("changes to the best set");
-            pool.extend(self.extend(&best, ADDED)?);
+            if best.effects().len() < MOST_EFFECTS {
+                pool.extend(self.extend(&best, ADDED)?);
+            }
             let changed = (0..best.effects().len()).into_par_iter().map(|i| {
                 let mut changed = self.grow(&best, i)?;
                 changed.extend(self.shrink(&best, i));
