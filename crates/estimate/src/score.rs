@@ -75,7 +75,7 @@ pub fn score_shapes(
 }
 
 /// How the instances of a shape are scored.
-enum Way {
+pub(crate) enum Way {
     /// By each size alone (places of the parameters): the prediction is linear in them.
     BySize(Vec<usize>),
     /// By the whole of what it does: it has no size to grow from (a limit).
@@ -84,7 +84,7 @@ enum Way {
     ByClock(Clock),
 }
 
-fn way(candidate: &Candidate, shape: &[f64]) -> Way {
+pub(crate) fn way(candidate: &Candidate, shape: &[f64]) -> Way {
     if let Some(clock) = candidate.effect.clock() {
         return Way::ByClock(clock);
     }
@@ -105,7 +105,7 @@ fn way(candidate: &Candidate, shape: &[f64]) -> Way {
 }
 
 /// What has to be simulated to score a shape.
-fn trials(candidate: &Candidate, shape: &[f64]) -> Vec<Trial> {
+pub(crate) fn trials(candidate: &Candidate, shape: &[f64]) -> Vec<Trial> {
     match way(candidate, shape) {
         Way::BySize(sizes) => sizes
             .into_iter()

@@ -7,7 +7,7 @@
 //! the best set: each effect removed, exchanged, grown, shrunk; one more added; until it stays
 //! ```
 //!
-//! A stage is left out where the best set promises nothing: no candidate's score could pay for its prior.
+//! A stage is left out where the best set leaves nothing but noise and no candidate's score could pay for its prior.
 
 use rayon::prelude::*;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at};
@@ -15,7 +15,7 @@ use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Start, fit, linea
 use crate::candidate_model::{CandidateModel, rank, remove};
 use crate::marginal_likelihood::{NominalPrior, log_marginal_likelihood};
 use crate::model_space::ModelSpace;
-use crate::noise_model::NoiseModel;
+use crate::noise_model::{NoiseModel, noise_variance, stepped};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -26,6 +26,8 @@ const REFITTED: usize = 16;
 /// Candidates fitted in the place of each effect of the best set, and beside it.
 const EXCHANGED: usize = 8;
 const ADDED: usize = 4;
+/// What is left, mean square, over that of the noise, where nothing else is: the noise is known to a tenth.
+const NOTHING_LEFT: f64 = 1.1;
 /// Effects of a set at the most.
 const MOST_EFFECTS: usize = 3;
 /// Rounds of changes to the best set.
@@ -112,13 +114,26 @@ impl<'a> Search<'a> {
         fitted
     }
 
-    /// Whether no candidate beside the best set could pay for its prior.
+    /// Whether the best set leaves nothing but noise, and no candidate beside it could pay for its prior.
     fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        let is_full = best.effects().len() >= MOST_EFFECTS;
-        Ok(is_full || (self.budget.is_spent)() || self.best_gain(best)? < self.space.price())
+        if (self.budget.is_spent)() || best.effects().len() >= MOST_EFFECTS {
+            return Ok(true);
+        }
+        Ok(self.leaves_noise(best) && self.best_gain(best)? < self.space.price())
+    }
+
+    /// Whether a set leaves nothing but the noise of the sensors and what no set is expected to explain.
+    fn leaves_noise(&self, set: &CandidateModel) -> bool {
+        let stepped = stepped(self.problem, set.effects());
+        let noise = noise_variance(&set.fit.discrepancy, &stepped);
+        let floor = self.options.floor.iter().zip(self.problem.output_std());
+        let channels = set.fit.variance.iter().zip(noise).zip(floor);
+        channels
+            .into_iter()
+            .all(|((left, noise), (floor, std))| *left < NOTHING_LEFT * (noise + (floor * std).powi(2)))
     }
 
     /// Sets of none to three effects, best first.
@@ -156,6 +171,7 @@ impl<'a> Search<'a> {
             }
             if size == 0 {
                 next.extend(self.unite(&pool)?);
+                next.extend(self.fit_joint(base, &linear)?);
                 rank(&mut next);
                 if !self.is_settled(&next)? {
                     step("pairs from many values");

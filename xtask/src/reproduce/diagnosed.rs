@@ -161,7 +161,8 @@ fn answer(context: &Context, rate_hz: f64, reading: Reading) -> Result<Outcome, 
         Ok(Record::from_uniform(name, 0.0, 1.0 / rate_hz, channels)?)
     };
     let (train, check) = ([record(1)?, record(2)?], [record(3)?]);
-    let request = Request::new(&model(context)?, &train, &check);
+    let model = model(context)?;
+    let request = Request::new(&model, &train, &check);
     Ok(diagnose(&request, &|_| ())?)
 }
 

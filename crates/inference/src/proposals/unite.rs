@@ -4,18 +4,48 @@
 //! nothing of one that the first leaves too small a trace of: such pairs are tried from many values, and from the values
 //! that both were fitted with alone.
 
-use simgap_effects::Placed;
-use simgap_estimate::{Candidate, EstimateError, Start, linearise_at};
+use simgap_effects::{Family, Placed};
+use simgap_estimate::{Base, Candidate, EstimateError, Start, joint_scores, linearise_at};
 
 use crate::candidate_model::{CandidateModel, add};
 use crate::search::Search;
 
 /// Single effects that are tried with a second one from afar.
 const FAR: usize = 2;
+/// Sets of two and of three that are fitted by their joint score, and shapes of each candidate that are scored.
+const JOINT: usize = 8;
+const SHAPES: usize = 3;
 /// Single effects that are tried with each other.
 const UNITED: usize = 6;
 
 impl Search<'_> {
+    /// Sets of two and three beside `base` that explain most together, by their joint scores.
+    pub(crate) fn fit_joint(
+        &self,
+        base: &CandidateModel,
+        linear: &Base<'_>,
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        let candidates = self.space.candidates.iter();
+        let free = candidates.filter(|(candidate, _)| {
+            !base.rules_out(candidate) && candidate.effect.family() != Family::NominalParameter
+        });
+        let shapes: Vec<(Candidate, Vec<f64>)> = free
+            .flat_map(|(candidate, scale)| {
+                let shapes = candidate.effect.starts(scale).into_iter().take(SHAPES);
+                shapes.map(move |shape| (candidate.clone(), shape))
+            })
+            .collect();
+        let scores = joint_scores(linear, &shapes, JOINT)?;
+        let starts: Vec<Start> = scores
+            .into_iter()
+            .map(|score| {
+                let start = base.fit.estimate.clone();
+                score.starts.into_iter().fold(start, |start, placed| add(&start, placed))
+            })
+            .collect();
+        Ok(self.fit_all(&starts, linear))
+    }
+
     /// The best of some sets, with one more effect from afar.
     pub(crate) fn extend_from_many_values(
         &self,

@@ -1,0 +1,133 @@
+//! What several further effects would bring together, without fitting them.
+//!
+//! Friction alone may fit with the wrong sign and a quadratic damping alone with a sixth of its value, where both together
+//! explain a gap. (1) of [`score`](crate::score()) holds for the columns C of several effects as for those of one: all pairs
+//! are scored from the same inner products, and the best pairs with every third.
+
+use simgap_effects::Placed;
+
+use crate::base::{Base, InCommon, Regressor, Trial};
+use crate::score::{Way, trials, way};
+use crate::{Candidate, EstimateError};
+
+/// Pairs that are scored with every third effect.
+const EXTENDED: usize = 12;
+
+/// What some effects would bring together.
+#[derive(Clone)]
+pub struct JointScore {
+    /// Expected fall of the objective.
+    pub gain: f64,
+    /// The effects with the sizes the data ask for.
+    pub starts: Vec<Placed>,
+}
+
+/// An effect of one size in one shape.
+struct Column<'a> {
+    candidate: &'a Candidate,
+    shape: &'a [f64],
+    /// Place of its size among its parameters.
+    size: usize,
+}
+
+/// Scores pairs and sets of three of the given effects, each with one size in a given shape, best first: the best pairs, and as
+/// many sets of three. Candidates with several sizes or none are left out, and sets that need a size outside its bounds.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn joint_scores(
+    base: &Base<'_>,
+    shapes: &[(Candidate, Vec<f64>)],
+    most: usize,
+) -> Result<Vec<JointScore>, EstimateError> {
+    let columns: Vec<Column<'_>> = shapes
+        .iter()
+        .filter_map(|(candidate, shape)| match way(candidate, shape) {
+            Way::BySize(sizes) if sizes.len() == 1 => Some(Column {
+                candidate,
+                shape,
+                size: sizes[0],
+            }),
+            _ => None,
+        })
+        .collect();
+    let mut signals = Vec::with_capacity(columns.len());
+    for column in &columns {
+        let trial: Vec<Trial> = trials(column.candidate, column.shape);
+        // A trial from which the plant runs away explains nothing.
+        match base.columns(column.candidate, &trial) {
+            Ok(found) => signals.extend(found),
+            Err(_) => signals.push(base.no_change()),
+        }
+    }
+    let in_common = base.in_common(&signals);
+    let scored = |set: &[usize]| base.joint_score(&columns, &in_common, set);
+    let mut pairs: Vec<(Vec<usize>, JointScore)> = vec![];
+    for i in 0..columns.len() {
+        for j in i + 1..columns.len() {
+            let set = vec![i, j];
+            pairs.extend(scored(&set).map(|score| (set, score)));
+        }
+    }
+    sort(&mut pairs);
+    let mut threes: Vec<(Vec<usize>, JointScore)> = vec![];
+    for (pair, _) in pairs.iter().take(EXTENDED) {
+        for k in 0..columns.len() {
+            let mut set = vec![pair[0], pair[1], k];
+            set.sort_unstable();
+            set.dedup();
+            if set.len() == 3 && threes.iter().all(|(known, _)| *known != set) {
+                threes.extend(scored(&set).map(|score| (set, score)));
+            }
+        }
+    }
+    sort(&mut threes);
+    let best = |list: Vec<(Vec<usize>, JointScore)>| list.into_iter().take(most);
+    let all = best(pairs).chain(best(threes));
+    Ok(all.map(|(_, score)| score).collect())
+}
+
+fn sort(list: &mut [(Vec<usize>, JointScore)]) {
+    list.sort_by(|(a, one), (b, other)| other.gain.total_cmp(&one.gain).then_with(|| a.cmp(b)));
+}
+
+impl Base<'_> {
+    /// The score of a set of columns; `None` where two are of one candidate, or where a size is outside its bounds.
+    fn joint_score(
+        &self,
+        columns: &[Column<'_>],
+        in_common: &InCommon,
+        set: &[usize],
+    ) -> Option<JointScore> {
+        let of = |k: &usize| &columns[*k];
+        for (n, k) in set.iter().enumerate() {
+            if set[..n].iter().any(|other| of(other).candidate == of(k).candidate) {
+                return None;
+            }
+        }
+        let regressors: Vec<Regressor> = set
+            .iter()
+            .map(|&trial| Regressor { trial, run: None })
+            .collect();
+        let (amplitudes, energy) = self.amplitudes(in_common, &regressors)?;
+        let mut starts = Vec::with_capacity(set.len());
+        for (column, amplitude) in set.iter().map(of).zip(amplitudes) {
+            let effect = column.candidate.effect;
+            let parameter = &effect.parameters()[column.size];
+            let neutral = parameter.neutral.unwrap_or(0.0);
+            let value = neutral + amplitude * (column.shape[column.size] - neutral);
+            if !(parameter.lower..=parameter.upper).contains(&value) || value == neutral {
+                return None;
+            }
+            let mut values = column.shape.to_vec();
+            values[column.size] = value;
+            effect.make_physical(&mut values);
+            starts.push(Placed::new(effect, column.candidate.at.clone(), values));
+        }
+        let share = (energy / self.energy).clamp(0.0, 1.0 - 1e-9);
+        Some(JointScore {
+            gain: -0.5 * self.independent_samples * (1.0 - share).ln(),
+            starts,
+        })
+    }
+}
