@@ -2,7 +2,6 @@
 
 use simgap_effects::Placed;
 use simgap_estimate::Start;
-use simgap_inference::noise_model::{noise_variance, stepped};
 use simgap_inference::{
     CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, Search, model_posterior,
     name, other,
@@ -52,11 +51,8 @@ pub(crate) fn decide(
     };
     let posterior = model_posterior(search, pool, &rms)?;
     let best = posterior.best().unwrap_or(&base).clone();
-    let noise = noise_variance(&best.fit.discrepancy, &stepped(problem, best.effects()));
-    let floor = search.options.floor.iter().zip(&std);
-    let noise = noise.iter().zip(floor);
     let gap = Gap {
-        noise: noise.map(|(noise, (floor, std))| noise + (floor * std).powi(2)).collect(),
+        noise: search.noise_of(&best),
         square,
         std,
     };

@@ -213,12 +213,6 @@ impl Base<'_> {
             .collect()
     }
 
-    /// No change of the prediction of any run.
-    pub(crate) fn no_change(&self) -> Vec<Signals> {
-        let zero = |run: &Signals| run.iter().map(|signal| vec![0.0; signal.len()]).collect();
-        self.at.discrepancy.iter().map(zero).collect()
-    }
-
     /// Change of the prediction of a run, divided by the share.
     fn change(&self, run: usize, mut predicted: Signals, share: f64) -> Signals {
         let before = &self.at.discrepancy[run];

@@ -22,16 +22,19 @@ pub struct JointScore {
     pub starts: Vec<Placed>,
 }
 
-/// An effect of one size in one shape.
+/// An effect in one shape, with its sizes.
 struct Column<'a> {
     candidate: &'a Candidate,
     shape: &'a [f64],
-    /// Place of its size among its parameters.
-    size: usize,
+    /// Places of its sizes among its parameters.
+    sizes: Vec<usize>,
+    /// The trial of the first size; the others follow.
+    first_trial: usize,
 }
 
-/// Scores pairs and sets of three of the given effects, each with one size in a given shape, best first: the best pairs, and as
-/// many sets of three. Candidates with several sizes or none are left out, and sets that need a size outside its bounds.
+/// Scores pairs and sets of three of the given effects, each in a given shape, best first: the best pairs, and as
+/// many sets of three. Candidates without a size that they are in proportion to are left out, and sets that need a size outside
+/// its bounds.
 ///
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated.
@@ -40,25 +43,24 @@ pub fn joint_scores(
     shapes: &[(Candidate, Vec<f64>)],
     most: usize,
 ) -> Result<Vec<JointScore>, EstimateError> {
-    let columns: Vec<Column<'_>> = shapes
-        .iter()
-        .filter_map(|(candidate, shape)| match way(candidate, shape) {
-            Way::BySize(sizes) if sizes.len() == 1 => Some(Column {
-                candidate,
-                shape,
-                size: sizes[0],
-            }),
-            _ => None,
-        })
-        .collect();
-    let mut signals = Vec::with_capacity(columns.len());
-    for column in &columns {
-        let trial: Vec<Trial> = trials(column.candidate, column.shape);
+    let mut columns: Vec<Column<'_>> = vec![];
+    let mut signals = vec![];
+    for (candidate, shape) in shapes {
+        let Way::BySize(sizes) = way(candidate, shape) else {
+            continue;
+        };
+        let trial: Vec<Trial> = trials(candidate, shape);
         // A trial from which the plant runs away explains nothing.
-        match base.columns(column.candidate, &trial) {
-            Ok(found) => signals.extend(found),
-            Err(_) => signals.push(base.no_change()),
-        }
+        let Ok(found) = base.columns(candidate, &trial) else {
+            continue;
+        };
+        columns.push(Column {
+            candidate,
+            shape,
+            sizes,
+            first_trial: signals.len(),
+        });
+        signals.extend(found);
     }
     let in_common = base.in_common(&signals);
     let scored = |set: &[usize]| base.joint_score(&columns, &in_common, set);
@@ -105,22 +107,30 @@ impl Base<'_> {
                 return None;
             }
         }
+        let trials_of = |column: &Column<'_>| {
+            let first = column.first_trial;
+            first..first + column.sizes.len()
+        };
         let regressors: Vec<Regressor> = set
             .iter()
-            .map(|&trial| Regressor { trial, run: None })
+            .flat_map(|k| trials_of(of(k)))
+            .map(|trial| Regressor { trial, run: None })
             .collect();
         let (amplitudes, energy) = self.amplitudes(in_common, &regressors)?;
+        let mut amplitudes = amplitudes.into_iter();
         let mut starts = Vec::with_capacity(set.len());
-        for (column, amplitude) in set.iter().map(of).zip(amplitudes) {
+        for column in set.iter().map(of) {
             let effect = column.candidate.effect;
-            let parameter = &effect.parameters()[column.size];
-            let neutral = parameter.neutral.unwrap_or(0.0);
-            let value = neutral + amplitude * (column.shape[column.size] - neutral);
-            if !(parameter.lower..=parameter.upper).contains(&value) || value == neutral {
-                return None;
-            }
             let mut values = column.shape.to_vec();
-            values[column.size] = value;
+            for (&size, amplitude) in column.sizes.iter().zip(amplitudes.by_ref()) {
+                let parameter = &effect.parameters()[size];
+                let neutral = parameter.neutral.unwrap_or(0.0);
+                let value = neutral + amplitude * (column.shape[size] - neutral);
+                if !(parameter.lower..=parameter.upper).contains(&value) || value == neutral {
+                    return None;
+                }
+                values[size] = value;
+            }
             effect.make_physical(&mut values);
             starts.push(Placed::new(effect, column.candidate.at.clone(), values));
         }

@@ -221,6 +221,8 @@ mod tests {
                     .sum();
                 let mut log = -3.0 - curved;
                 for k in 0..2 {
+                    // The fit balances the prior.
+                    log -= (local[k].mean - local[k].coordinate) / local[k].std.powi(2) * at[k];
                     let u = (local[k].coordinate + at[k] - local[k].mean) / local[k].std;
                     log += local[k].log_weight - 0.5 * u * u
                         - (local[k].std * std::f64::consts::TAU.sqrt()).ln();

@@ -19,8 +19,8 @@ use crate::search::Search;
 const OF_GAP: f64 = 0.015;
 /// nor one that moves every output by less than this share of its motion, rms;
 const OF_MOTION: f64 = 0.003;
-/// nor one that explains less than this share of what is left without it, mean square.
-const OF_REST: f64 = 0.05;
+/// nor one that explains less than this share of what is left above the noise without it, mean square.
+const OF_REST: f64 = 0.5;
 /// Log odds within which effects cannot be told apart: one to twenty.
 const INDISTINGUISHABLE: f64 = 3.0;
 /// Log odds beyond which a set does not count.
@@ -127,12 +127,19 @@ impl Relevance {
     }
 
     /// Whether what a set has beyond another is worth a name.
-    fn is_relevant(&self, with: &CandidateModel, without: &CandidateModel) -> bool {
-        let channels = closed(with, without).zip(&without.fit.variance);
+    fn is_relevant(
+        &self,
+        search: &Search<'_>,
+        with: &CandidateModel,
+        without: &CandidateModel,
+    ) -> bool {
+        let noise = search.noise_of(with);
+        let left = without.fit.variance.iter().zip(noise);
+        let channels = closed(with, without).zip(left);
         let mut channels = channels.zip(self.gap.iter().zip(&self.motion));
-        channels.any(|((closed, left), (gap, motion))| {
+        channels.any(|((closed, (left, noise)), (gap, motion))| {
             let least = (OF_GAP * gap).max(OF_MOTION * motion);
-            closed > least * least && closed > OF_REST * left
+            closed > least * least && closed > OF_REST * (left - noise)
         })
     }
 
@@ -164,7 +171,7 @@ impl Relevance {
                 };
                 // A law beyond a special case of it is held to the same.
                 simpler.extend(search.shrink(&set, i));
-                is_relevant &= simpler.iter().all(|other| self.is_relevant(&set, other));
+                is_relevant &= simpler.iter().all(|other| self.is_relevant(search, &set, other));
                 for other in simpler {
                     let key = other.key();
                     if kept.iter().chain(&rest).all(|known| known.key() != key) {

@@ -125,15 +125,20 @@ impl<'a> Search<'a> {
         Ok(self.leaves_noise(best) && self.best_gain(best)? < self.space.price())
     }
 
-    /// Whether a set leaves nothing but the noise of the sensors and what no set is expected to explain.
-    fn leaves_noise(&self, set: &CandidateModel) -> bool {
+    /// Noise of the sensors in what a set leaves, and what no set is expected to explain, mean square of each channel.
+    #[must_use]
+    pub fn noise_of(&self, set: &CandidateModel) -> Vec<f64> {
         let stepped = stepped(self.problem, set.effects());
         let noise = noise_variance(&set.fit.discrepancy, &stepped);
         let floor = self.options.floor.iter().zip(self.problem.output_std());
-        let channels = set.fit.variance.iter().zip(noise).zip(floor);
-        channels
-            .into_iter()
-            .all(|((left, noise), (floor, std))| *left < NOTHING_LEFT * (noise + (floor * std).powi(2)))
+        let channels = noise.iter().zip(floor);
+        channels.map(|(noise, (floor, std))| noise + (floor * std).powi(2)).collect()
+    }
+
+    /// Whether a set leaves nothing but noise.
+    fn leaves_noise(&self, set: &CandidateModel) -> bool {
+        let channels = set.fit.variance.iter().zip(self.noise_of(set));
+        channels.into_iter().all(|(left, noise)| *left < NOTHING_LEFT * noise)
     }
 
     /// Sets of none to three effects, best first.

@@ -1,4 +1,4 @@
-//! Single laws fitted to stretches of the records, each of which begins anew.
+//! Laws of the machine fitted to stretches of the records, each of which begins anew.
 //!
 //! Over a whole record a simulation that is a little off parts from the machine: the objective has a valley for
 //! every lap that one is ahead of the other, and for every blow that one receives alone. In a stretch that begins
@@ -21,7 +21,7 @@ use crate::candidate_model::{CandidateModel, rank, straight};
 use crate::model_space::ModelSpace;
 use crate::search::Search;
 
-/// Laws fitted to stretches, by score, and sets that are fitted to whole records then.
+/// Single laws fitted to stretches, by score, and sets that are fitted to whole records then.
 const FITTED: usize = 12;
 const FINISHED: usize = 6;
 /// Samples of the stretches that a fit begins with, at the least, and how many there are of a record at the most.
@@ -33,7 +33,7 @@ const JOINED: usize = 4;
 const STEPS: usize = 80;
 
 impl Search<'_> {
-    /// Single laws fitted to stretches of the records, to longer ones, and then to whole records. Best first.
+    /// Laws of the machine fitted to stretches of the records, to longer ones, and then to whole records. Best first.
     pub(crate) fn multiple_shooting(
         &self,
         base: &CandidateModel,
@@ -68,7 +68,7 @@ impl Search<'_> {
         }
     }
 
-    /// The best single laws, each stretch with an initial state of its own.
+    /// The best laws, alone and together, each stretch with an initial state of its own.
     fn fit_to_stretches(&self, base: &CandidateModel, cut: &Cut) -> Result<Vec<Start>, EstimateError> {
         let problem = cut.apply(self.problem);
         let nominal = &straight(base);
@@ -85,6 +85,7 @@ impl Search<'_> {
         let begun = search.fit(&begun.estimate)?;
         let linear = linearise_at(&problem, &begun.fit, &search.options)?;
         let mut found = search.extend_at(&begun, &linear, FITTED)?;
+        found.extend(search.fit_joint(&begun, &linear)?);
         found.extend(search.multistart(&begun, &linear)?);
         rank(&mut found);
         found.truncate(FINISHED);
@@ -93,7 +94,8 @@ impl Search<'_> {
 
     /// The laws of the machine, with what is typical of the motion of a fit of other runs of the same records.
     fn laws_in(&self, problem: &Problem, fit: &Fit) -> Result<ModelSpace, EstimateError> {
-        let laws = self.space.of_families(Family::is_law).candidates;
+        let of_machine = |family: Family| family != Family::Measurement;
+        let laws = self.space.of_families(of_machine).candidates;
         ModelSpace::of(problem, fit, laws.into_iter().map(|(law, _)| law))
     }
 }

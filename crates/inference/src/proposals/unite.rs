@@ -4,7 +4,7 @@
 //! nothing of one that the first leaves too small a trace of: such pairs are tried from many values, and from the values
 //! that both were fitted with alone.
 
-use simgap_effects::{Family, Placed};
+use simgap_effects::Placed;
 use simgap_estimate::{Base, Candidate, EstimateError, Start, joint_scores, linearise_at};
 
 use crate::candidate_model::{CandidateModel, add};
@@ -26,9 +26,7 @@ impl Search<'_> {
         linear: &Base<'_>,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let candidates = self.space.candidates.iter();
-        let free = candidates.filter(|(candidate, _)| {
-            !base.rules_out(candidate) && candidate.effect.family() != Family::NominalParameter
-        });
+        let free = candidates.filter(|(candidate, _)| !base.rules_out(candidate));
         let shapes: Vec<(Candidate, Vec<f64>)> = free
             .flat_map(|(candidate, scale)| {
                 let shapes = candidate.effect.starts(scale).into_iter().take(SHAPES);
