@@ -53,7 +53,8 @@ pub fn accepted(bench: &Bench, effects: &[Effect], effect: &Effect) -> Vec<Name>
             names.extend(chain_twins(plant, effect));
         }
     }
-    if plant.inputs.is_empty() && linear && plant.outputs.len() == 2 && effect.kind == "sensor_gain" {
+    if plant.inputs.is_empty() && linear && plant.outputs.len() == 2 && effect.kind == "sensor_gain"
+    {
         // Without inputs the size of the motion is free: one gain up is the other one down.
         names.extend((0..2).map(|c| ("sensor_gain", Place::Channel(c))));
     }
@@ -100,7 +101,11 @@ fn chain_twins(plant: &Plant, e: &Effect) -> Vec<Name> {
     if e.kind == "sensor_gain" && e.get("gain_factor") < 0.0 {
         gains.remove(0);
     }
-    let members: Vec<Place> = plant.member_pairs().iter().map(|p| Place::Between(p.0, p.1)).collect();
+    let members: Vec<Place> = plant
+        .member_pairs()
+        .iter()
+        .map(|p| Place::Between(p.0, p.1))
+        .collect();
     let parts = (plant.masses.len(), plant.springs.len(), plant.dampers.len());
     match parts {
         (1, 0, 0) => gains.push(("mass_error", Place::Mass(0))),
@@ -136,7 +141,9 @@ fn constant_twins(bench: &Bench, e: &Effect) -> Vec<Name> {
         return vec![];
     }
     let plant = &bench.plant;
-    let mut names: Vec<Name> = (0..plant.masses.len()).map(|i| ("constant_force", Place::Mass(i))).collect();
+    let mut names: Vec<Name> = (0..plant.masses.len())
+        .map(|i| ("constant_force", Place::Mass(i)))
+        .collect();
     for c in 0..plant.outputs.len() {
         names.push(("sensor_bias", Place::Channel(c)));
         names.push(("sensor_drift", Place::Channel(c)));
@@ -170,12 +177,18 @@ fn signature(bench: &Bench, (kind, at): Name) -> Vec<f64> {
         _ => {}
     }
     let free = bench.free_responses(0);
-    let scale: Vec<f64> = (0..plant.outputs.len()).map(|c| {
-        let size = |list: &[f64]| dot(&list[c * n..(c + 1) * n], &list[c * n..(c + 1) * n]).sqrt();
-        free.iter().map(|f| size(f)).fold(1e-30, f64::max)
-    }).collect();
+    let scale: Vec<f64> = (0..plant.outputs.len())
+        .map(|c| {
+            let size =
+                |list: &[f64]| dot(&list[c * n..(c + 1) * n], &list[c * n..(c + 1) * n]).sqrt();
+            free.iter().map(|f| size(f)).fold(1e-30, f64::max)
+        })
+        .collect();
     let scaled = |list: &[f64]| -> Vec<f64> {
-        list.iter().enumerate().map(|(i, v)| v / scale[i / n]).collect()
+        list.iter()
+            .enumerate()
+            .map(|(i, v)| v / scale[i / n])
+            .collect()
     };
     let basis: Vec<Vec<f64>> = free.iter().map(|f| scaled(f)).collect();
     remainder(&basis, scaled(&list))

@@ -83,7 +83,10 @@ pub struct Other {
 pub fn same_place(a: &Value, b: &Value) -> bool {
     let sorted = |v: &Value| -> Option<Vec<String>> {
         let pair = v.get("between")?.as_array()?;
-        let mut names: Vec<String> = pair.iter().map(|n| n.as_str().unwrap_or("").to_owned()).collect();
+        let mut names: Vec<String> = pair
+            .iter()
+            .map(|n| n.as_str().unwrap_or("").to_owned())
+            .collect();
         names.sort();
         Some(names)
     };

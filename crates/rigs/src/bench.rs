@@ -31,7 +31,13 @@ pub struct Setup {
 
 /// Draws what is done in a record.
 #[must_use]
-pub fn draw_setup(plant: &Plant, shapes: &[Shape], step_s: f64, samples: usize, rng: &mut Rng) -> Setup {
+pub fn draw_setup(
+    plant: &Plant,
+    shapes: &[Shape],
+    step_s: f64,
+    samples: usize,
+    rng: &mut Rng,
+) -> Setup {
     let factor = rng.log_uniform(0.6, 1.5);
     let before = (samples / 8).max(100);
     let from_rest = rng.chance(0.65);
@@ -47,7 +53,9 @@ pub fn draw_setup(plant: &Plant, shapes: &[Shape], step_s: f64, samples: usize, 
     if let Some(shape) = shape {
         for _ in &plant.inputs {
             let mut grid = excitation(shape, rng, &frame);
-            grid.values.iter_mut().for_each(|v| *v *= factor * plant.drive);
+            grid.values
+                .iter_mut()
+                .for_each(|v| *v *= factor * plant.drive);
             sources.push(grid);
         }
     }
@@ -173,13 +181,28 @@ impl Bench {
 
     /// Simulates a record; `None` where the motion runs away.
     #[must_use]
-    pub fn run(&self, plant: &Plant, effects: &[Effect], record: usize, substeps: usize) -> Option<(Assembly, Run)> {
+    pub fn run(
+        &self,
+        plant: &Plant,
+        effects: &[Effect],
+        record: usize,
+        substeps: usize,
+    ) -> Option<(Assembly, Run)> {
         let setup = &self.setups[record];
         let mut assembly = assemble(plant, effects, record);
         let drives = drives(&mut assembly, plant, setup);
         let first = first_state(&assembly, setup);
-        let run = march(&assembly.machine, &drives, &first, self.span(record, substeps));
-        let fine = run.outputs.iter().flatten().all(|v| v.is_finite() && v.abs() < 1e9);
+        let run = march(
+            &assembly.machine,
+            &drives,
+            &first,
+            self.span(record, substeps),
+        );
+        let fine = run
+            .outputs
+            .iter()
+            .flatten()
+            .all(|v| v.is_finite() && v.abs() < 1e9);
         fine.then_some((assembly, run))
     }
 
@@ -270,7 +293,13 @@ impl Bench {
 
     /// Samples of all channels with given noise.
     #[must_use]
-    pub fn noisy(&self, assembly: &Assembly, run: &Run, record: usize, noise: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    pub fn noisy(
+        &self,
+        assembly: &Assembly,
+        run: &Run,
+        record: usize,
+        noise: &[Vec<f64>],
+    ) -> Vec<Vec<f64>> {
         let setup = &self.setups[record];
         let channels = run.outputs.iter().zip(&assembly.chains).enumerate();
         channels
@@ -313,7 +342,11 @@ impl Bench {
             .collect();
         let basis: Vec<Vec<f64>> = free.iter().map(|f| scaled(f)).collect();
         let left = crate::linear::remainder(&basis, scaled(&difference));
-        Some(left.chunks(n).map(|c| (c.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt()).collect())
+        Some(
+            left.chunks(n)
+                .map(|c| (c.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt())
+                .collect(),
+        )
     }
 
     /// Substeps at which halving them changes no output by a tenth of its noise; `None` where

@@ -108,7 +108,10 @@ fn attempt_case(wanted: &Wanted, number: usize, rng: &mut Rng) -> Option<Case> {
 }
 
 fn setups(plant: &Plant, wanted: &Wanted, rng: &mut Rng) -> Vec<crate::bench::Setup> {
-    let held = !wanted.kinds.iter().any(|k| k.contains("delay") || k.contains("lag"))
+    let held = !wanted
+        .kinds
+        .iter()
+        .any(|k| k.contains("delay") || k.contains("lag"))
         && plant.control.is_none()
         && rng.chance(0.08);
     let shapes = shapes_for(plant, held);
@@ -135,7 +138,11 @@ fn finish(draft: Draft, wanted: &Wanted, number: usize, rng: &mut Rng) -> Option
     if draft.gap > 0.0 {
         share = share.min(draft.gap / 4.0);
     }
-    let ar1 = if rng.chance(1.0 / 3.0) { rng.uniform(0.3, 0.9) } else { 0.0 };
+    let ar1 = if rng.chance(1.0 / 3.0) {
+        rng.uniform(0.3, 0.9)
+    } else {
+        0.0
+    };
     let input_noise = match rng.chance(0.2) && !bench.plant.inputs.is_empty() {
         true => rng.uniform(1e-3, 5e-3),
         false => 0.0,
@@ -177,8 +184,14 @@ fn named(draft: &Draft, all: &[Effect], e: &Effect, twins: bool) -> Named {
         true => accepted(&draft.bench, all, e),
         false => vec![],
     };
-    let place = |(kind, at): &(&'static str, _)| (*kind).to_owned().pipe(|k| (k, plant.place_json(*at)));
-    let parameters = e.values.iter().map(|(name, value)| ((*name).to_owned(), json!(value)));
+    let twin = |(kind, at): &crate::accept::Name| crate::truth::Twin {
+        kind: (*kind).to_owned(),
+        at: plant.place_json(*at),
+    };
+    let parameters = e
+        .values
+        .iter()
+        .map(|(name, value)| ((*name).to_owned(), json!(value)));
     let mut parameters: serde_json::Map<String, Value> = parameters.collect();
     if !e.phases.is_empty() {
         parameters.insert("phase_rad".into(), json!(e.phases));
@@ -187,24 +200,15 @@ fn named(draft: &Draft, all: &[Effect], e: &Effect, twins: bool) -> Named {
         kind: e.kind.to_owned(),
         at: plant.place_json(e.at),
         parameters,
-        accept: accept
-            .iter()
-            .map(place)
-            .map(|(kind, at)| crate::truth::Twin { kind, at })
-            .collect(),
+        accept: accept.iter().map(twin).collect(),
     }
 }
-
-trait Pipe: Sized {
-    fn pipe<T>(self, f: impl FnOnce(Self) -> T) -> T {
-        f(self)
-    }
-}
-impl Pipe for String {}
 
 fn truth(draft: &Draft, wanted: &Wanted, name: &str, noise: TruthNoise) -> Truth {
     let catalogued = |e: &&Effect| {
-        !e.kind.starts_with("foreign_") && e.kind != "sensor_not_connected" && !e.kind.starts_with("slip_")
+        !e.kind.starts_with("foreign_")
+            && e.kind != "sensor_not_connected"
+            && !e.kind.starts_with("slip_")
     };
     let all: Vec<Effect> = draft.effects.iter().chain(&draft.wrong).cloned().collect();
     let known: Vec<&Effect> = all.iter().filter(catalogued).collect();
@@ -224,7 +228,11 @@ fn truth(draft: &Draft, wanted: &Wanted, name: &str, noise: TruthNoise) -> Truth
         status: status.to_owned(),
         effects,
         foreign: foreign.map(|e| named(draft, &all, e, false)).collect(),
-        deviations: draft.deviations.iter().map(|e| named(draft, &all, e, false)).collect(),
+        deviations: draft
+            .deviations
+            .iter()
+            .map(|e| named(draft, &all, e, false))
+            .collect(),
         noise,
         gap: draft.gap,
         gaps: draft.gaps.clone(),

@@ -68,24 +68,41 @@ fn judged(mut draft: Draft) -> Option<Draft> {
         // Each of a pair must matter beside the other.
         if draft.effects.len() > 1 && record == check {
             for effect in &draft.effects {
-                let alone = draft.bench.gap(std::slice::from_ref(effect), record, &free)?;
+                let alone = draft
+                    .bench
+                    .gap(std::slice::from_ref(effect), record, &free)?;
                 let apart = alone.iter().zip(&draft.gaps).map(|(a, g)| (a - g).abs());
-                if alone.iter().copied().fold(0.0, f64::max) < GAP.0 || apart.fold(0.0, f64::max) < 0.1 * GAP.0 {
+                if alone.iter().copied().fold(0.0, f64::max) < GAP.0
+                    || apart.fold(0.0, f64::max) < 0.1 * GAP.0
+                {
                     return None;
                 }
             }
         }
     }
-    let upper = if draft.effects.len() > 1 { 1.3 * GAP.1 } else { 1.1 * GAP.1 };
+    let upper = if draft.effects.len() > 1 {
+        1.3 * GAP.1
+    } else {
+        1.1 * GAP.1
+    };
     draft.gap = draft.gap.min(least);
     (draft.gap >= GAP.0 && draft.gap <= upper).then_some(draft)
 }
 
 fn has_clock(kind: &str) -> bool {
-    matches!(kind, "harmonic_force" | "tone_pickup" | "time_varying_stiffness")
+    matches!(
+        kind,
+        "harmonic_force" | "tone_pickup" | "time_varying_stiffness"
+    )
 }
 
-fn sized(bench: &Bench, kind: &'static str, plain: &Run, free: &[Vec<f64>], rng: &mut Rng) -> Option<Effect> {
+fn sized(
+    bench: &Bench,
+    kind: &'static str,
+    plain: &Run,
+    free: &[Vec<f64>],
+    rng: &mut Rng,
+) -> Option<Effect> {
     let places = sites(&bench.plant, kind);
     if places.is_empty() {
         return None;
@@ -138,7 +155,11 @@ fn parameters(mut draft: Draft, rng: &mut Rng) -> Option<Draft> {
         let at = *rng.pick(&places);
         let up = rng.log_uniform(1.3, 3.0);
         let factor = if rng.chance(0.5) { up } else { 1.0 / up };
-        if draft.wrong.iter().any(|e: &Effect| e.kind == kind && e.at == at) {
+        if draft
+            .wrong
+            .iter()
+            .any(|e: &Effect| e.kind == kind && e.at == at)
+        {
             return None;
         }
         let wrong = error(kind, at, factor);
@@ -172,13 +193,19 @@ fn parameters(mut draft: Draft, rng: &mut Rng) -> Option<Draft> {
     // The true factor is of what the model file says: the small error is part of it.
     for wrong in &mut draft.wrong {
         let same = |e: &&Effect| e.kind == wrong.kind && e.at == wrong.at;
-        let small = draft.deviations.iter().find(same).map_or(1.0, |e| e.values[0].1);
+        let small = draft
+            .deviations
+            .iter()
+            .find(same)
+            .map_or(1.0, |e| e.values[0].1);
         if wrong.kind != "input_gain" {
             wrong.values[0].1 *= small;
         }
     }
     let wrong = &draft.wrong;
-    draft.deviations.retain(|d| !wrong.iter().any(|w| w.kind == d.kind && w.at == d.at));
+    draft
+        .deviations
+        .retain(|d| !wrong.iter().any(|w| w.kind == d.kind && w.at == d.at));
     Some(draft)
 }
 
@@ -217,16 +244,23 @@ fn slip(mut draft: Draft, kind: &'static str, rng: &mut Rng) -> Option<Draft> {
         _ if plant.inputs.is_empty() => return None,
         "sign_input" if plant.outputs.len() == 1 => gain("sensor_gain", Place::Channel(0), -1.0),
         "sign_input" => gain("slip_sign_input", Place::Input(0), -1.0),
-        _ => gain("input_gain", Place::Input(0), 1.0 / misread(plant.inputs[0].unit, None)?),
+        _ => gain(
+            "input_gain",
+            Place::Input(0),
+            1.0 / misread(plant.inputs[0].unit, None)?,
+        ),
     };
-    let twice = kind == "sign_input" || kind == "unit_input" || effect.kind == "sensor_not_connected";
+    let twice =
+        kind == "sign_input" || kind == "unit_input" || effect.kind == "sensor_not_connected";
     if !swings_little(&draft.bench) {
         return None;
     }
     if !twice {
         let check = draft.bench.setups.len() - 1;
         let free = draft.bench.free_responses(check);
-        let gaps = draft.bench.gap(std::slice::from_ref(&effect), check, &free)?;
+        let gaps = draft
+            .bench
+            .gap(std::slice::from_ref(&effect), check, &free)?;
         draft.gap = gaps.iter().copied().fold(0.0, f64::max);
         if draft.gap < GAP.0 {
             return None;

@@ -230,8 +230,6 @@ mod tests {
             },
             |n| n + 2.0 * (2.0 * PI * 0.3 * 0.5 * n + 0.4).sin(),
         );
-        let odd = |n: f64| n % 2.0 == 1.0;
-        let _ = odd;
         close(
             Chain {
                 alternating_gain: Some((0.1, 0.0)),

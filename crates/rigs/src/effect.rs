@@ -66,7 +66,8 @@ pub struct Assembly {
 /// The plant without effects.
 #[must_use]
 pub fn bare(plant: &Plant) -> Assembly {
-    let members = |list: &[crate::plant::Member]| list.iter().map(|m| (m.a, m.b, m.value)).collect();
+    let members =
+        |list: &[crate::plant::Member]| list.iter().map(|m| (m.a, m.b, m.value)).collect();
     let path = Path {
         gain: 1.0,
         lag_s: 0.0,
@@ -245,10 +246,7 @@ fn add_support(machine: &mut Machine, e: &Effect) {
             moved(&mut output.a, &mut output.b);
         }
     }
-    let (m, k) = (
-        e.get("support_mass_kg"),
-        e.get("support_stiffness_n_per_m"),
-    );
+    let (m, k) = (e.get("support_mass_kg"), e.get("support_stiffness_n_per_m"));
     machine.masses.push(m);
     machine.springs.push((support, Node::Ground, k));
     let c = 2.0 * e.get("support_damping_ratio") * (k * m).sqrt();

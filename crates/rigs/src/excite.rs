@@ -76,7 +76,11 @@ fn levels(changes: &[(f64, f64)], edge: f64, t: f64) -> f64 {
     if after == 0 {
         return 0.0;
     }
-    let before = if after >= 2 { changes[after - 2].1 } else { 0.0 };
+    let before = if after >= 2 {
+        changes[after - 2].1
+    } else {
+        0.0
+    };
     let (at, level) = changes[after - 1];
     before + (level - before) * smooth_step((t - at) / edge)
 }
@@ -168,9 +172,7 @@ fn switching(shape: Shape, rng: &mut Rng, frame: &Frame, low: f64, high: f64) ->
         _ => (0.35 / high).max(8.0),
     };
     let chip = (rng.uniform(0.25, 0.5) / high).max(edge).ceil();
-    let wait = (rng.uniform(0.7, 1.5) / low)
-        .min(0.15 * n)
-        .max(1.2 * edge);
+    let wait = (rng.uniform(0.7, 1.5) / low).min(0.15 * n).max(1.2 * edge);
     let mut changes: Vec<(f64, f64)> = Vec::new();
     let mut level = rng.sign();
     while t < n {

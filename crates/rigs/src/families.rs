@@ -70,11 +70,7 @@ fn length(rng: &mut Rng) -> Unit {
 }
 
 fn acceleration(rng: &mut Rng) -> Unit {
-    *rng.pick(&[
-        Unit("m/s^2", 1.0),
-        Unit("m/s^2", 1.0),
-        Unit("g", 9.806_65),
-    ])
+    *rng.pick(&[Unit("m/s^2", 1.0), Unit("m/s^2", 1.0), Unit("g", 9.806_65)])
 }
 
 fn speed(rng: &mut Rng) -> Unit {
@@ -253,17 +249,18 @@ fn drive_train(rng: &mut Rng) -> Plant {
         let name = if i == 0 { "shaft" } else { "coupling" };
         let k = k * if three { rng.uniform(1.5, 4.0) } else { 1.0 };
         p.springs.push(member(name, Mass(i), Mass(i + 1), k));
-        p.dampers.push(member(name, Mass(i), Mass(i + 1), shaft * k));
+        p.dampers
+            .push(member(name, Mass(i), Mass(i + 1), shaft * k));
     }
     let bearing = j * 2.0 * PI * f * rng.log_uniform(0.01, 0.1);
     p.dampers
         .push(member("motor bearing", Mass(0), Ground, bearing));
     if rng.chance(0.6) {
         let c = bearing * rng.uniform(0.5, 2.0);
-        p.dampers.push(member("load bearing", Mass(last), Ground, c));
+        p.dampers
+            .push(member("load bearing", Mass(last), Ground, c));
     }
-    p.inputs
-        .push(input("M_motor", Mass(0), Unit("N m", 1.0)));
+    p.inputs.push(input("M_motor", Mass(0), Unit("N m", 1.0)));
     p.drive = j * (2.0 * PI * f) * rng.log_uniform(1.0, 10.0);
     let rate = *rng.pick(&[Unit("rad/s", 1.0), Unit("rpm", 2.0 * PI / 60.0)]);
     p.outputs.push(output("w_motor", Velocity, Mass(0), rate));
@@ -343,8 +340,7 @@ fn arm(rng: &mut Rng) -> Plant {
     let mut p = plant("arm", &[("arm", j)]);
     p.pendulum = vec![(0, sheet(mgl))];
     p.dampers = vec![member("bearing", Mass(0), Ground, c)];
-    p.inputs
-        .push(input("M_drive", Mass(0), Unit("N m", 1.0)));
+    p.inputs.push(input("M_drive", Mass(0), Unit("N m", 1.0)));
     p.drive = mgl * rng.uniform(0.05, 0.25);
     let angle = *rng.pick(&[Unit("rad", 1.0), Unit("deg", PI / 180.0)]);
     match rng.below(3) {

@@ -4,8 +4,7 @@ use crate::kinds::{Scale, Template};
 use crate::rng::Rng;
 
 /// Draws the shape of a fault and leaves its size open.
-#[must_use]
-pub fn template(kind: &'static str, scale: &Scale, rng: &mut Rng) -> Template {
+pub(crate) fn template(kind: &'static str, scale: &Scale, rng: &mut Rng) -> Template {
     let s = *scale;
     let sign = rng.sign();
     let late = s.rms / s.rate;
@@ -18,12 +17,12 @@ pub fn template(kind: &'static str, scale: &Scale, rng: &mut Rng) -> Template {
         }
         "sensor_delay" => Box::new(move |z| vec![("delay_s", z * late)]),
         "sensor_lag" => Box::new(move |z| vec![("time_constant_s", z * late)]),
-        "alternating_timing" => Box::new(move |z| {
-            vec![("timing_s", sign * z * late), ("even_share", even)]
-        }),
-        "alternating_gain" => Box::new(move |z| {
-            vec![("gain_difference", sign * z.min(0.9)), ("even_share", even)]
-        }),
+        "alternating_timing" => {
+            Box::new(move |z| vec![("timing_s", sign * z * late), ("even_share", even)])
+        }
+        "alternating_gain" => {
+            Box::new(move |z| vec![("gain_difference", sign * z.min(0.9)), ("even_share", even)])
+        }
         "clock_skew" => Box::new(move |z| {
             let skew = 1.7 * z * late / s.duration_s;
             vec![("skew", sign * skew.min(0.04))]
@@ -67,9 +66,7 @@ fn by_samples(kind: &'static str, s: Scale, rng: &mut Rng) -> Template {
                 true => *rng.pick(&[50.0, 60.0, 100.0]),
                 false => rng.log_uniform(0.7 * s.band_hz.0, 0.9 * half),
             };
-            Box::new(move |z| {
-                vec![("amplitude", 1.41 * z * s.rms), ("frequency_hz", frequency)]
-            })
+            Box::new(move |z| vec![("amplitude", 1.41 * z * s.rms), ("frequency_hz", frequency)])
         }
         "dropouts" => {
             let longest = rng.whole(1, 6) as f64;
@@ -84,12 +81,7 @@ fn by_samples(kind: &'static str, s: Scale, rng: &mut Rng) -> Template {
         }
         _ => {
             let share = rng.log_uniform(0.001, 0.008);
-            Box::new(move |z| {
-                vec![
-                    ("share", share),
-                    ("size", z * s.rms / share.sqrt()),
-                ]
-            })
+            Box::new(move |z| vec![("share", share), ("size", z * s.rms / share.sqrt())])
         }
     }
 }

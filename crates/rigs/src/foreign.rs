@@ -4,8 +4,7 @@ use crate::kinds::{Scale, Template};
 use crate::rng::Rng;
 
 /// Draws the shape of a law and leaves its size open.
-#[must_use]
-pub fn template(kind: &'static str, scale: &Scale, rng: &mut Rng) -> Template {
+pub(crate) fn template(kind: &'static str, scale: &Scale, rng: &mut Rng) -> Template {
     let s = *scale;
     let per_d = s.force / s.rms;
     match kind {
@@ -27,9 +26,9 @@ pub fn template(kind: &'static str, scale: &Scale, rng: &mut Rng) -> Template {
                 ("small_speed", 0.002 * s.rate),
             ]
         }),
-        "foreign_place_damping" => Box::new(move |z| {
-            vec![("coefficient", z * s.force / (s.rate * s.rms * s.rms))]
-        }),
+        "foreign_place_damping" => {
+            Box::new(move |z| vec![("coefficient", z * s.force / (s.rate * s.rms * s.rms))])
+        }
         "foreign_play_slider" => {
             let (stiff, gap) = (rng.uniform(1.0, 4.0) * per_d, rng.uniform(0.5, 1.5) * s.rms);
             Box::new(move |z| {

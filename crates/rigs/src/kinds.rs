@@ -44,7 +44,12 @@ pub const EFFECTS: [&str; 34] = [
 ];
 
 /// Nominal parameters.
-pub const PARAMETERS: [&str; 4] = ["mass_error", "stiffness_error", "damping_error", "input_gain"];
+pub const PARAMETERS: [&str; 4] = [
+    "mass_error",
+    "stiffness_error",
+    "damping_error",
+    "input_gain",
+];
 
 /// Laws that the catalogue lacks.
 pub const FOREIGN: [&str; 8] = [
@@ -66,7 +71,11 @@ pub fn group(kind: &str) -> &'static str {
         "harmonic_force" | "tone_pickup" => "tone",
         "input_lag" | "input_delay" | "sensor_delay" | "sensor_lag" | "clock_skew" => "late",
         "coulomb_friction" | "stribeck_friction" | "presliding_friction" | "hysteresis" => "dry",
-        "clipping" | "end_stop" | "bilinear_stiffness" | "backlash" | "quadratic_stiffness"
+        "clipping"
+        | "end_stop"
+        | "bilinear_stiffness"
+        | "backlash"
+        | "quadratic_stiffness"
         | "cubic_stiffness" => "spring",
         "dropouts" | "outliers" | "quantisation" => "samples",
         "viscous_damping" | "quadratic_damping" | "asymmetric_damping" => "damping",
@@ -180,9 +189,9 @@ fn at_mass(kind: &'static str, s: Scale, rng: &mut Rng) -> Template {
     let share = rng.uniform(0.1, 0.8);
     match kind {
         "constant_force" => Box::new(move |z| vec![("force_n", sign * z * s.force)]),
-        "harmonic_force" => Box::new(move |z| {
-            vec![("amplitude_n", z * s.force), ("frequency_hz", frequency)]
-        }),
+        "harmonic_force" => {
+            Box::new(move |z| vec![("amplitude_n", z * s.force), ("frequency_hz", frequency)])
+        }
         "attached_mode" => Box::new(move |z| {
             vec![
                 ("attached_mass_kg", z.min(2.0) * s.mass),
@@ -225,7 +234,11 @@ fn member_law(kind: &'static str, s: Scale, rng: &mut Rng) -> Template {
         }
         "presliding_friction" => {
             let dp = rng.log_uniform(0.05, 0.5) * s.rms;
-            let tau = if rng.chance(0.5) { rng.uniform(0.05, 0.3) * late } else { 0.0 };
+            let tau = if rng.chance(0.5) {
+                rng.uniform(0.05, 0.3) * late
+            } else {
+                0.0
+            };
             Box::new(move |z| {
                 vec![
                     ("friction_force_n", z * s.force),
@@ -278,7 +291,10 @@ fn spring_law(kind: &'static str, s: Scale, rng: &mut Rng) -> Template {
     let (upper, lower) = *rng.pick(&[(true, true), (true, false), (false, true)]);
     match kind {
         "cubic_stiffness" => Box::new(move |z| {
-            vec![("cubic_stiffness_n_per_m3", sign * z * per_d / (s.rms * s.rms))]
+            vec![(
+                "cubic_stiffness_n_per_m3",
+                sign * z * per_d / (s.rms * s.rms),
+            )]
         }),
         "quadratic_stiffness" => {
             Box::new(move |z| vec![("quadratic_stiffness_n_per_m2", sign * z * per_d / s.rms)])
@@ -295,7 +311,11 @@ fn spring_law(kind: &'static str, s: Scale, rng: &mut Rng) -> Template {
         }
         "end_stop" => {
             let stiff = rng.log_uniform(2.0, 20.0) * per_d;
-            let tau = if rng.chance(0.5) { rng.uniform(0.05, 0.3) * s.rms / s.rate } else { 0.0 };
+            let tau = if rng.chance(0.5) {
+                rng.uniform(0.05, 0.3) * s.rms / s.rate
+            } else {
+                0.0
+            };
             Box::new(move |z| {
                 let inside = 1.0 - z.min(0.9);
                 let mut values = vec![

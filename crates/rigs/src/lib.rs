@@ -32,9 +32,9 @@ mod scale;
 pub mod score;
 pub mod truth;
 
-pub use case::{Case, RigError, draw_case};
-pub use plan::{Filter, Role};
 pub use answer::Diagnosis;
+pub use case::{Case, RigError, draw_case};
 pub use page::page;
+pub use plan::{Filter, Role};
 pub use score::{Answer, Score, score};
 pub use truth::Truth;

@@ -41,7 +41,10 @@ pub fn page(score: &Score) -> String {
         "\nExpected calibration error of {statements} statements: {:.3}\n",
         score.calibration_error
     );
-    text += &format!("Statements at 0.9 and more that are wrong: {}\n", share(score.sure.1, score.sure.0));
+    text += &format!(
+        "Statements at 0.9 and more that are wrong: {}\n",
+        share(score.sure.1, score.sure.0)
+    );
     let extra = score.cases.iter().filter(|c| c.extra > 0).count();
     text += &format!("Right cases with more named than is there: {extra}\n");
     text += &format!(

@@ -143,7 +143,9 @@ mod tests {
 
     #[test]
     fn verify_shares_and_kinds_are_spread_evenly() {
-        let plan: Vec<Wanted> = (1..=200).map(|n| wanted(7, n, &Filter::default())).collect();
+        let plan: Vec<Wanted> = (1..=200)
+            .map(|n| wanted(7, n, &Filter::default()))
+            .collect();
         for (role, share) in ROLES {
             assert_eq!(plan.iter().filter(|w| w.role == role).count(), 2 * share);
         }

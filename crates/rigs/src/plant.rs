@@ -131,10 +131,7 @@ impl Plant {
         match node {
             Node::Ground => "ground".into(),
             Node::Mass(i) => self.mass_names[i].clone(),
-            Node::Base(i) if self.base_count() == 1 => {
-                let _ = i;
-                "base".into()
-            }
+            Node::Base(_) if self.base_count() == 1 => "base".into(),
             Node::Base(i) => format!("base{}", i + 1),
         }
     }

@@ -11,7 +11,12 @@ use crate::rng::Rng;
 pub(crate) fn noise_levels(bench: &Bench, effects: &[Effect], share: f64) -> Option<Vec<f64>> {
     let (_, run) = bench.run(&bench.plant, effects, 0, 8)?;
     let before = bench.setups[0].before * KEPT;
-    Some(run.outputs.iter().map(|y| share * deviation(&y[before..])).collect())
+    Some(
+        run.outputs
+            .iter()
+            .map(|y| share * deviation(&y[before..]))
+            .collect(),
+    )
 }
 
 /// Factor on the recorded values of an input by a slip: what is written is not what acted.
@@ -49,11 +54,20 @@ pub(crate) fn csv(
     let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
     for (i, input) in bench.plant.inputs.iter().enumerate() {
         let from = setup.before * KEPT;
-        let clean: Vec<f64> = run.inputs[i][from..].iter().step_by(KEPT).copied().collect();
+        let clean: Vec<f64> = run.inputs[i][from..]
+            .iter()
+            .step_by(KEPT)
+            .copied()
+            .collect();
         let rms = (clean.iter().map(|v| v * v).sum::<f64>() / clean.len() as f64).sqrt();
         let factor = misrecorded(draft, i) / input.unit.1;
-        let values = clean.iter().map(|v| factor * (v + input_noise * rms * rng.normal()));
-        columns.push((format!("{} [{}]", input.channel, input.unit.0), values.collect()));
+        let values = clean
+            .iter()
+            .map(|v| factor * (v + input_noise * rms * rng.normal()));
+        columns.push((
+            format!("{} [{}]", input.channel, input.unit.0),
+            values.collect(),
+        ));
     }
     for (output, values) in bench.plant.outputs.iter().zip(outputs) {
         let values = values.iter().map(|v| v / output.unit.1).collect();

@@ -52,8 +52,7 @@ impl View<'_> {
 }
 
 /// The scale at a place, from a run of the plant without the cause.
-#[must_use]
-pub fn scale(bench: &Bench, run: &Run, record: usize, at: Place, kind: &str) -> Scale {
+pub(crate) fn scale(bench: &Bench, run: &Run, record: usize, at: Place, kind: &str) -> Scale {
     let plant = &bench.plant;
     let setup = &bench.setups[record];
     let view = View { bench, run, record };
@@ -106,7 +105,11 @@ pub fn scale(bench: &Bench, run: &Run, record: usize, at: Place, kind: &str) -> 
         }
     };
     let rate = rms(&slope(&signal, h));
-    scale.rms = if centred { deviation(&signal) } else { rms(&signal) };
+    scale.rms = if centred {
+        deviation(&signal)
+    } else {
+        rms(&signal)
+    };
     scale.rate = rate;
     scale.range = signal
         .iter()

@@ -55,7 +55,10 @@ pub struct Score {
 /// Whether a name is the truth or cannot be told from it.
 fn is_name_of(kind: &str, at: &serde_json::Value, truth: &Named) -> bool {
     let own = truth.kind == kind && same_place(&truth.at, at);
-    own || truth.accept.iter().any(|t| t.kind == kind && same_place(&t.at, at))
+    own || truth
+        .accept
+        .iter()
+        .any(|t| t.kind == kind && same_place(&t.at, at))
 }
 
 fn names(said: &Said, truth: &Named) -> bool {
@@ -129,19 +132,28 @@ fn judged(truth: &Truth, diagnosis: &Diagnosis) -> (bool, bool) {
                 .iter()
                 .all(|s| is_parameter(s) || truth.effects.iter().any(|t| names(s, t)));
             let right = blames && rest && matched(said, &truth.effects, names);
-            (right, right || (blames && matched(said, &truth.effects, declares)))
+            (
+                right,
+                right || (blames && matched(said, &truth.effects, declares)),
+            )
         }
         Role::Pair => {
             let whole = blames && said.len() == truth.effects.len();
             let right = whole && matched(said, &truth.effects, names);
-            (right, right || (blames && matched(said, &truth.effects, declares)))
+            (
+                right,
+                right || (blames && matched(said, &truth.effects, declares)),
+            )
         }
         Role::Single | Role::Slip | Role::Foreign => {
             let Some(only) = truth.effects.first() else {
                 return (open, open);
             };
             let first = blames && said.first().is_some_and(|s| names(s, only));
-            (first, first || (blames && said.iter().any(|s| declares(s, only))))
+            (
+                first,
+                first || (blames && said.iter().any(|s| declares(s, only))),
+            )
         }
     }
 }
@@ -159,7 +171,11 @@ fn statements(truth: &Truth, diagnosis: &Diagnosis) -> Vec<(f64, bool)> {
 
 fn place(at: &serde_json::Value) -> String {
     let pair = |v: &serde_json::Value| match v.as_array() {
-        Some(list) => list.iter().filter_map(|n| n.as_str()).collect::<Vec<_>>().join("-"),
+        Some(list) => list
+            .iter()
+            .filter_map(|n| n.as_str())
+            .collect::<Vec<_>>()
+            .join("-"),
         None => v.as_str().unwrap_or("?").to_owned(),
     };
     at.as_object()
@@ -169,9 +185,18 @@ fn place(at: &serde_json::Value) -> String {
 
 fn line(truth: &Truth, answer: &Answer) -> String {
     let true_names = truth.effects.iter().chain(&truth.foreign);
-    let was: Vec<String> = true_names.map(|e| format!("{}@{}", e.kind, place(&e.at))).collect();
-    let was = if was.is_empty() { "nothing".into() } else { was.join(" + ") };
-    let slip = truth.slip.as_ref().map_or(String::new(), |s| format!(" ({s})"));
+    let was: Vec<String> = true_names
+        .map(|e| format!("{}@{}", e.kind, place(&e.at)))
+        .collect();
+    let was = if was.is_empty() {
+        "nothing".into()
+    } else {
+        was.join(" + ")
+    };
+    let slip = truth
+        .slip
+        .as_ref()
+        .map_or(String::new(), |s| format!(" ({s})"));
     let got = match &answer.diagnosis {
         None => format!("no answer: {}", answer.failure),
         Some(d) => {
@@ -181,11 +206,24 @@ fn line(truth: &Truth, answer: &Answer) -> String {
                     .iter()
                     .map(|o| format!("{}@{}", o.kind, place(&o.at)))
                     .collect();
-                let or = if others.is_empty() { String::new() } else { format!(" or {}", others.join("/")) };
-                format!("{}@{} {:.2}{or}", s.kind, place(&s.at), s.probability.unwrap_or(f64::NAN))
+                let or = if others.is_empty() {
+                    String::new()
+                } else {
+                    format!(" or {}", others.join("/"))
+                };
+                format!(
+                    "{}@{} {:.2}{or}",
+                    s.kind,
+                    place(&s.at),
+                    s.probability.unwrap_or(f64::NAN)
+                )
             };
             let named: Vec<String> = d.verdict.effects.iter().map(one).collect();
-            let complete = if d.verdict.complete == Some(false) { ", incomplete" } else { "" };
+            let complete = if d.verdict.complete == Some(false) {
+                ", incomplete"
+            } else {
+                ""
+            };
             let figure = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.3}"));
             format!(
                 "{}{complete}: {} | gap {} -> {} -> {}, floor {}",
@@ -207,8 +245,16 @@ fn line(truth: &Truth, answer: &Answer) -> String {
         truth.excitations.join(","),
         truth.gap,
         truth.noise.rms_share,
-        if truth.noise.ar1 > 0.0 { " coloured" } else { "" },
-        if truth.noise.input_share > 0.0 { " input-noise" } else { "" },
+        if truth.noise.ar1 > 0.0 {
+            " coloured"
+        } else {
+            ""
+        },
+        if truth.noise.input_share > 0.0 {
+            " input-noise"
+        } else {
+            ""
+        },
     )
 }
 
@@ -217,7 +263,12 @@ fn score_case(truth: &Truth, answer: &Answer) -> CaseScore {
         Some(d) => {
             let (right, declared) = judged(truth, d);
             let extra = d.verdict.effects.len().saturating_sub(truth.effects.len());
-            (right, declared, statements(truth, d), if right { extra } else { 0 })
+            (
+                right,
+                declared,
+                statements(truth, d),
+                if right { extra } else { 0 },
+            )
         }
         None => (false, false, vec![], 0),
     };

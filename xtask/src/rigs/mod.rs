@@ -84,9 +84,7 @@ fn at(path: &Path) -> impl FnOnce(io::Error) -> RigsError + '_ {
 
 fn filter(args: &Args) -> Result<Filter, RigsError> {
     let role = match &args.role {
-        Some(name) => {
-            Some(Role::from_name(name).ok_or_else(|| RigsError::Role(name.clone()))?)
-        }
+        Some(name) => Some(Role::from_name(name).ok_or_else(|| RigsError::Role(name.clone()))?),
         None => None,
     };
     let known = simgap_rigs::kinds::EFFECTS
