@@ -60,7 +60,9 @@ fn verify_dry_friction_takes_off_a_constant_per_half_swing_and_sticks() {
     assert!((lowest + 0.0075).abs() < 1e-6, "{lowest}");
     let end = x[x.len() - 1];
     assert!(end.abs() < 1e-6, "{end}");
-    assert!(x[x.len() - 800..].iter().all(|v| *v == end));
+    // The switch is found to 2⁻⁴⁰ of a substep; the speed left there times 2 s is far below this.
+    let drift = x[x.len() - 800..].iter().map(|v| (v - end).abs());
+    assert!(drift.fold(0.0, f64::max) < 1e-12);
 }
 
 #[test]
