@@ -5,5 +5,6 @@ pub mod demo_records;
 pub mod effects_docs;
 pub mod generated;
 pub mod reproduce;
+pub mod rigs;
 pub mod tidy;
 pub mod tutorial_records;

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use xtask::{blind_check, demo_records, effects_docs, reproduce, tidy, tutorial_records};
+use xtask::{blind_check, demo_records, effects_docs, reproduce, rigs, tidy, tutorial_records};
 
 #[derive(Parser)]
 #[command(name = "xtask", about = "Project tasks")]
@@ -23,6 +23,8 @@ enum Task {
     /// Diagnose the case of a folder; started by blind-check, once for each case
     #[command(hide = true)]
     BlindWorker(blind_check::WorkerArgs),
+    /// Draw machines with a withheld cause, have the program diagnose them, and score the answers
+    Rigs(rigs::Args),
     /// Write docs/effects.md from the catalogue of effects
     EffectsDocs(effects_docs::Args),
     /// Make the logger files that docs/tutorial.md works with
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
         Task::DemoRecords(args) => return demo(&args),
         Task::BlindCheck(args) => return blind_check::main(&args),
         Task::BlindWorker(args) => return blind_check::worker_main(&args),
+        Task::Rigs(args) => return rigs_main(&args),
         Task::EffectsDocs(args) => return finish(effects_docs::run(&args)),
         Task::TutorialRecords(args) => return finish(tutorial_records::run(&args)),
         Task::Tidy => return finish(tidy::run()),
@@ -78,6 +81,20 @@ fn demo(args: &demo_records::DemoArgs) -> ExitCode {
             } else {
                 ExitCode::SUCCESS
             }
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+#[allow(clippy::print_stdout, clippy::print_stderr)]
+fn rigs_main(args: &rigs::Args) -> ExitCode {
+    match rigs::run(args) {
+        Ok(text) => {
+            print!("{text}");
+            ExitCode::SUCCESS
         }
         Err(error) => {
             eprintln!("error: {error}");

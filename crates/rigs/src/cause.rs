@@ -1,0 +1,271 @@
+//! The cause of a case: drawn, placed and sized.
+
+use std::f64::consts::PI;
+
+use crate::bench::Bench;
+use crate::case::Draft;
+use crate::deviate::{apply, error};
+use crate::effect::Effect;
+use crate::kinds::{PARAMETERS, group, sites, template};
+use crate::march::Run;
+use crate::plan::{Role, Wanted};
+use crate::plant::{Place, Quantity, Unit};
+use crate::rng::Rng;
+
+/// Gap of a channel that an effect may cause, as a share of its motion.
+const GAP: (f64, f64) = (0.03, 0.6);
+/// A gap within this factor of the wanted one is near enough.
+const NEAR: f64 = 1.2;
+/// Steps of the search for a size.
+const STEPS: usize = 10;
+
+/// Adds the cause; `None` where this machine does not show it.
+pub(crate) fn with_cause(draft: Draft, wanted: &Wanted, rng: &mut Rng) -> Option<Draft> {
+    match wanted.role {
+        Role::Clean => {
+            let shown = draft.bench.run(&draft.bench.plant, &[], 0, 8).is_some();
+            (shown && swings_little(&draft.bench)).then_some(draft)
+        }
+        Role::Parameters => parameters(draft, rng),
+        Role::Slip => slip(draft, wanted.kinds[0], rng),
+        Role::Single | Role::Pair | Role::Foreign => effects(draft, wanted, rng),
+    }
+}
+
+fn swings_little(bench: &Bench) -> bool {
+    let arm = !bench.plant.pendulum.is_empty();
+    !arm || (0..bench.setups.len()).all(|record| {
+        let run = bench.run(&bench.plant, &[], record, 8);
+        run.is_some_and(|(_, run)| run.states[0].iter().all(|a| a.abs() < 2.5))
+    })
+}
+
+fn effects(mut draft: Draft, wanted: &Wanted, rng: &mut Rng) -> Option<Draft> {
+    if !swings_little(&draft.bench) || wanted.kinds.windows(2).any(|k| group(k[0]) == group(k[1])) {
+        return None;
+    }
+    let plain = draft.bench.run(&draft.bench.plant, &[], 0, 8)?.1;
+    let free = draft.bench.free_responses(0);
+    for kind in &wanted.kinds {
+        let effect = sized(&draft.bench, kind, &plain, &free, rng)?;
+        draft.effects.push(effect);
+    }
+    judged(draft)
+}
+
+/// Measures the gap on the check record and on the first; `None` where it is not within the bounds.
+fn judged(mut draft: Draft) -> Option<Draft> {
+    let check = draft.bench.setups.len() - 1;
+    let all: Vec<Effect> = draft.effects.iter().chain(&draft.wrong).cloned().collect();
+    let mut least = f64::INFINITY;
+    for record in [0, check] {
+        let free = draft.bench.free_responses(record);
+        let gaps = draft.bench.gap(&all, record, &free)?;
+        let largest = gaps.iter().copied().fold(0.0, f64::max);
+        least = least.min(largest);
+        draft.gap = largest;
+        draft.gaps = gaps;
+        // Each of a pair must matter beside the other.
+        if draft.effects.len() > 1 && record == check {
+            for effect in &draft.effects {
+                let alone = draft
+                    .bench
+                    .gap(std::slice::from_ref(effect), record, &free)?;
+                let apart = alone.iter().zip(&draft.gaps).map(|(a, g)| (a - g).abs());
+                if alone.iter().copied().fold(0.0, f64::max) < GAP.0
+                    || apart.fold(0.0, f64::max) < 0.1 * GAP.0
+                {
+                    return None;
+                }
+            }
+        }
+    }
+    let upper = if draft.effects.len() > 1 {
+        1.3 * GAP.1
+    } else {
+        1.1 * GAP.1
+    };
+    draft.gap = draft.gap.min(least);
+    (draft.gap >= GAP.0 && draft.gap <= upper).then_some(draft)
+}
+
+fn has_clock(kind: &str) -> bool {
+    matches!(
+        kind,
+        "harmonic_force" | "tone_pickup" | "time_varying_stiffness"
+    )
+}
+
+fn sized(
+    bench: &Bench,
+    kind: &'static str,
+    plain: &Run,
+    free: &[Vec<f64>],
+    rng: &mut Rng,
+) -> Option<Effect> {
+    let places = sites(&bench.plant, kind);
+    if places.is_empty() {
+        return None;
+    }
+    let at = *rng.pick(&places);
+    let scale = crate::scale::scale(bench, plain, 0, at, kind);
+    let positive = [scale.rms, scale.rate, scale.force];
+    if positive.iter().any(|v| !(v.is_finite() && *v > 1e-15)) {
+        return None;
+    }
+    let shape = template(kind, &scale, rng);
+    let phases = match has_clock(kind) {
+        true => bench.setups.iter().map(|_| 2.0 * PI * rng.unit()).collect(),
+        false => vec![],
+    };
+    let target = rng.log_uniform(GAP.0 * NEAR, GAP.1 / NEAR);
+    let mut size = target;
+    for _ in 0..STEPS {
+        let effect = Effect {
+            kind,
+            at,
+            values: shape(size),
+            phases: phases.clone(),
+        };
+        let Some(gaps) = bench.gap(std::slice::from_ref(&effect), 0, free) else {
+            size *= 0.3;
+            continue;
+        };
+        let gap = gaps.iter().copied().fold(0.0, f64::max);
+        let off = target / gap.max(1e-9);
+        if (1.0 / NEAR..NEAR).contains(&off) {
+            return Some(effect);
+        }
+        size *= off.powf(0.9).clamp(0.1, 8.0);
+        if !(1e-6..1e4).contains(&size) {
+            return None;
+        }
+    }
+    None
+}
+
+fn parameters(mut draft: Draft, rng: &mut Rng) -> Option<Draft> {
+    let count = if rng.chance(0.25) { 2 } else { 1 };
+    for _ in 0..count {
+        let kind = *rng.pick(&PARAMETERS);
+        let places = sites(&draft.bench.plant, kind);
+        if places.is_empty() {
+            return None;
+        }
+        let at = *rng.pick(&places);
+        let up = rng.log_uniform(1.3, 3.0);
+        let factor = if rng.chance(0.5) { up } else { 1.0 / up };
+        if draft
+            .wrong
+            .iter()
+            .any(|e: &Effect| e.kind == kind && e.at == at)
+        {
+            return None;
+        }
+        let wrong = error(kind, at, factor);
+        apply(&mut draft.bench.plant, &wrong);
+        draft.wrong.push(wrong);
+    }
+    if !swings_little(&draft.bench) {
+        return None;
+    }
+    let check = draft.bench.setups.len() - 1;
+    let wrong = draft.wrong.clone();
+    for record in [0, check] {
+        let free = draft.bench.free_responses(record);
+        let gaps = draft.bench.gap(&wrong, record, &free)?;
+        draft.gap = gaps.iter().copied().fold(0.0, f64::max);
+        draft.gaps = gaps;
+        if draft.gap < GAP.0 {
+            return None;
+        }
+        // Each of two must matter alone.
+        for one in wrong.iter().filter(|_| wrong.len() > 1) {
+            let mut bench = draft.bench.clone();
+            bench.plant = bench.without.clone();
+            apply(&mut bench.plant, one);
+            let alone = bench.gap(std::slice::from_ref(one), record, &free)?;
+            if alone.iter().copied().fold(0.0, f64::max) < GAP.0 {
+                return None;
+            }
+        }
+    }
+    // The true factor is of what the model file says: the small error is part of it.
+    for wrong in &mut draft.wrong {
+        let same = |e: &&Effect| e.kind == wrong.kind && e.at == wrong.at;
+        let small = draft
+            .deviations
+            .iter()
+            .find(same)
+            .map_or(1.0, |e| e.values[0].1);
+        if wrong.kind != "input_gain" {
+            wrong.values[0].1 *= small;
+        }
+    }
+    let wrong = &draft.wrong;
+    draft
+        .deviations
+        .retain(|d| !wrong.iter().any(|w| w.kind == d.kind && w.at == d.at));
+    Some(draft)
+}
+
+/// The factor that a unit read wrongly leaves.
+fn misread(unit: Unit, quantity: Option<Quantity>) -> Option<f64> {
+    match (unit.0, quantity) {
+        ("m" | "m/s" | "N" | "rad" | "rad/s", _) => Some(1000.0),
+        ("m/s^2", _) => Some(1.0 / 9.806_65),
+        ("mm" | "mm/s" | "kN", _) => Some(1e-3),
+        _ => None,
+    }
+}
+
+fn slip(mut draft: Draft, kind: &'static str, rng: &mut Rng) -> Option<Draft> {
+    let plant = &draft.bench.plant;
+    let channel = rng.below(plant.outputs.len());
+    let gain = |kind, at, factor| Effect {
+        kind,
+        at,
+        values: vec![("gain_factor", factor)],
+        phases: vec![],
+    };
+    let effect = match kind {
+        "unit_output" => {
+            let output = &plant.outputs[channel];
+            let factor = misread(output.unit, Some(output.quantity))?;
+            gain("sensor_gain", Place::Channel(channel), factor)
+        }
+        "sign_output" => gain("sensor_gain", Place::Channel(channel), -1.0),
+        "not_connected" => Effect {
+            kind: "sensor_not_connected",
+            at: Place::Channel(channel),
+            values: vec![],
+            phases: vec![],
+        },
+        _ if plant.inputs.is_empty() => return None,
+        "sign_input" if plant.outputs.len() == 1 => gain("sensor_gain", Place::Channel(0), -1.0),
+        "sign_input" => gain("slip_sign_input", Place::Input(0), -1.0),
+        _ => gain(
+            "input_gain",
+            Place::Input(0),
+            1.0 / misread(plant.inputs[0].unit, None)?,
+        ),
+    };
+    let twice =
+        kind == "sign_input" || kind == "unit_input" || effect.kind == "sensor_not_connected";
+    if !swings_little(&draft.bench) {
+        return None;
+    }
+    if !twice {
+        let check = draft.bench.setups.len() - 1;
+        let free = draft.bench.free_responses(check);
+        let gaps = draft
+            .bench
+            .gap(std::slice::from_ref(&effect), check, &free)?;
+        draft.gap = gaps.iter().copied().fold(0.0, f64::max);
+        if draft.gap < GAP.0 {
+            return None;
+        }
+    }
+    draft.effects.push(effect);
+    Some(draft)
+}

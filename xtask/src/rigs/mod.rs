@@ -1,0 +1,162 @@
+//! `cargo xtask rigs`: draws machines with a withheld cause, has a program diagnose each, scores the answers.
+
+mod ask;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use rayon::prelude::*;
+use simgap_rigs::{Answer, Filter, Role, Truth, draw_case, page, score};
+
+/// Arguments of `cargo xtask rigs`.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// Seed of the cases: 1 to 999 while developing, 1000 to 1999 for reports
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Number of cases
+    #[arg(long, default_value_t = 100)]
+    cases: usize,
+    /// Folder for cases, answers, truths and the score
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Only cases of this role: single, pair, clean, parameters, foreign or slip
+    #[arg(long)]
+    role: Option<String>,
+    /// Only cases with this kind
+    #[arg(long)]
+    kind: Option<String>,
+    /// Cases at a time
+    #[arg(long, default_value_t = 2)]
+    jobs: usize,
+    /// The program that diagnoses
+    #[arg(long, value_name = "FILE", default_value = "target/debug/simgap")]
+    program: PathBuf,
+    /// Score the answers that exist, ask for none
+    #[arg(long)]
+    score_only: bool,
+    /// Draw the cases and ask for nothing
+    #[arg(long)]
+    draw_only: bool,
+}
+
+/// Why no score was made.
+#[derive(Debug, thiserror::Error)]
+pub enum RigsError {
+    /// A role that does not exist.
+    #[error("role {0}: needed is single, pair, clean, parameters, foreign or slip")]
+    Role(String),
+    /// A kind that is not drawn.
+    #[error("kind {0}: needed is an effect of the catalogue or a foreign law of the rigs")]
+    Kind(String),
+    /// A case cannot be drawn.
+    #[error(transparent)]
+    Rig(#[from] simgap_rigs::RigError),
+    /// A file cannot be read or written.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// A truth or an answer that cannot be read.
+    #[error("{path}: {source}")]
+    Json {
+        /// The file.
+        path: String,
+        /// Why.
+        source: serde_json::Error,
+    },
+    /// No threads.
+    #[error(transparent)]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+fn at(path: &Path) -> impl FnOnce(io::Error) -> RigsError + '_ {
+    move |source| RigsError::File {
+        path: path.display().to_string(),
+        source,
+    }
+}
+
+fn filter(args: &Args) -> Result<Filter, RigsError> {
+    let role = match &args.role {
+        Some(name) => Some(Role::from_name(name).ok_or_else(|| RigsError::Role(name.clone()))?),
+        None => None,
+    };
+    let known = simgap_rigs::kinds::EFFECTS
+        .iter()
+        .chain(&simgap_rigs::kinds::FOREIGN);
+    let kind = match &args.kind {
+        Some(name) => {
+            let found = known.copied().find(|kind| kind == name);
+            Some(found.ok_or_else(|| RigsError::Kind(name.clone()))?)
+        }
+        None => None,
+    };
+    Ok(Filter { role, kind })
+}
+
+/// Draws, asks and scores; the lines to print.
+///
+/// # Errors
+/// [`RigsError`] for arguments that mean nothing, cases that cannot be drawn, and files.
+pub fn run(args: &Args) -> Result<String, RigsError> {
+    let filter = filter(args)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.jobs.max(1))
+        .build()?;
+    fs::create_dir_all(&args.out).map_err(at(&args.out))?;
+    let truths = Mutex::new(Vec::new());
+    let numbers: Vec<usize> = (1..=args.cases).collect();
+    let answered = pool.install(|| {
+        let one = |number: &usize| -> Result<(Truth, Option<Answer>), RigsError> {
+            let (truth, folder) = drawn(args, *number, &filter)?;
+            if let Ok(mut list) = truths.lock() {
+                list.push(truth.clone());
+            }
+            let answer = match args.draw_only {
+                true => None,
+                false => ask::answer(args, &folder, &truth.name)?,
+            };
+            Ok((truth, answer))
+        };
+        let each = numbers.par_iter().with_max_len(1).map(one);
+        each.collect::<Result<Vec<_>, _>>()
+    })?;
+    let lines: Result<Vec<String>, _> = answered
+        .iter()
+        .map(|(truth, _)| serde_json::to_string(truth))
+        .collect();
+    let path = args.out.join("truths.jsonl");
+    let text = lines.map_err(|source| RigsError::Json {
+        path: path.display().to_string(),
+        source,
+    })?;
+    fs::write(&path, text.join("\n") + "\n").map_err(at(&path))?;
+    let pairs: Vec<(Truth, Answer)> = answered
+        .into_iter()
+        .filter_map(|(truth, answer)| Some((truth, answer?)))
+        .collect();
+    let text = page::page(&score(&pairs));
+    let path = args.out.join("score.md");
+    fs::write(&path, &text).map_err(at(&path))?;
+    Ok(text)
+}
+
+/// The truth of a case, its files written where they are not there.
+fn drawn(args: &Args, number: usize, filter: &Filter) -> Result<(Truth, PathBuf), RigsError> {
+    let case = draw_case(args.seed, number, filter)?;
+    let folder = args.out.join("cases").join(&case.name);
+    fs::create_dir_all(&folder).map_err(at(&folder))?;
+    for (name, text) in &case.files {
+        let path = folder.join(name);
+        if !fs::read_to_string(&path).is_ok_and(|old| old == *text) {
+            fs::write(&path, text).map_err(at(&path))?;
+        }
+    }
+    Ok((case.truth, folder))
+}
