@@ -19,12 +19,7 @@ fn whole_diagnosis(bencher: divan::Bencher<'_, '_>, rows: usize) {
     let model = plant();
     let of_number = |k| record(&model, &truth, k, rows, 1e-3, 0.0);
     let records: Vec<Record> = (1..4).map(of_number).collect();
-    let request = Request {
-        model: &model,
-        train: &records[..2],
-        check: &records[2..],
-        withheld: &[],
-    };
+    let request = Request::new(&model, &records[..2], &records[2..]);
     bencher.bench_local(|| diagnose(&request, &|_| {}).unwrap());
 }
 

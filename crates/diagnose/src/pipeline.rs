@@ -86,6 +86,18 @@ pub(crate) struct Prepared {
     pub(crate) parameters: Vec<Placed>,
 }
 
+impl Prepared {
+    /// Minus the log-likelihood of re-estimated parameters under the given options.
+    fn misfit_of_parameters(&self, options: &FitOptions) -> f64 {
+        let held = FitOptions {
+            most_steps: 0,
+            ..options.clone()
+        };
+        let fitted = fit(&self.train, &self.recalibrated.estimate, &held);
+        fitted.map_or(f64::INFINITY, |fit| fit.misfit)
+    }
+}
+
 /// Diagnoses the gap between a model and records.
 ///
 /// The result depends on the model, the records and the withheld kinds alone, not on the number
@@ -132,6 +144,12 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let found = decision.start();
     let excerpt = &prepared.excerpt;
     let estimate = fit_to_all(&prepared.train, excerpt, found, as_given, &final_options)?;
+    // A free law that leaves more of all records than re-estimated parameters is no model of them.
+    let is_law = decision.status == Status::Unknown;
+    let estimate = match is_law && estimate.misfit > prepared.misfit_of_parameters(&final_options) {
+        true => prepared.recalibrated.clone(),
+        false => estimate,
+    };
     finish(request, &data, &prepared, decision, estimate, &final_options, progress, stopped_early)
 }
 

@@ -23,10 +23,8 @@ fn judged(train: &[Record], check: &[Record], withheld: &[&str]) -> Outcome {
     let withheld: Vec<String> = withheld.iter().map(ToString::to_string).collect();
     let model = plant();
     let request = Request {
-        model: &model,
-        train,
-        check,
         withheld: &withheld,
+        ..Request::new(&model, train, check)
     };
     diagnose(&request, &|_| {}).unwrap()
 }
@@ -122,12 +120,8 @@ at = "slide"
 fn of_slide(truth: &[Placed]) -> Outcome {
     let model = Model::from_toml(SLIDE).unwrap();
     let record = |number| record(&model, truth, number, ROWS, STEP_S, 0.03);
-    let request = Request {
-        model: &model,
-        train: &[1, 2].map(record),
-        check: &[record(3)],
-        withheld: &[],
-    };
+    let (train, check) = ([1, 2].map(record), [record(3)]);
+    let request = Request::new(&model, &train, &check);
     diagnose(&request, &|_| {}).unwrap()
 }
 

@@ -104,7 +104,7 @@ fn verify_a_wrong_law_that_fits_is_told_as_such() {
     let outcome = diagnosed(&truth, &["quadratic_damping"]);
     let verdict = &outcome.diagnosis.verdict;
     let honest =
-        verdict.status == Status::Unknown || verdict.effects.iter().any(|effect| effect.stand_in);
+        verdict.status == Status::Unknown || !verdict.complete;
     assert!(honest, "{verdict:?}");
 }
 
@@ -154,7 +154,7 @@ fn verify_a_law_is_not_made_of_a_spring_that_is_gone() {
     let outcome = diagnosed(&truth, &["backlash"]);
     let verdict = &outcome.diagnosis.verdict;
     let honest =
-        verdict.status == Status::Unknown || verdict.effects.iter().any(|effect| effect.stand_in);
+        verdict.status == Status::Unknown || !verdict.complete;
     assert!(honest, "{verdict:?}");
 }
 
@@ -279,7 +279,7 @@ fn verify_friction_before_it_slides_is_found_with_its_damping() {
         let kind = "presliding_friction".to_string();
         assert_eq!(named(&outcome), [(kind, ground())]);
         let effect = &outcome.diagnosis.verdict.effects[0];
-        assert!(!effect.stand_in, "{:?}", effect.evidence);
+        assert!(outcome.diagnosis.verdict.complete, "{:?}", effect.evidence);
         let values = &effect.parameters;
         assert!((values[0].value / 6.0 - 1.0).abs() < 0.05, "{values:?}");
         assert!(

@@ -365,7 +365,7 @@ mod tests {
 
     use super::*;
     use crate::layout::Freedom;
-    use crate::{Start, FitOptions};
+    use crate::Start;
 
     const OSCILLATOR: &str = r#"schema = "simgap-model/1"
 name = "oscillator"

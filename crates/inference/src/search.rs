@@ -9,10 +9,12 @@
 //!
 //! A stage is left out where the best set leaves nothing but noise and no candidate's score could pay for its prior.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at};
 
-use crate::candidate_model::{CandidateModel, rank, remove};
+use crate::candidate_model::{CandidateModel, name, rank, remove};
 use crate::marginal_likelihood::{NominalPrior, log_marginal_likelihood};
 use crate::model_space::ModelSpace;
 use crate::noise_model::{NoiseModel, noise_variance, stepped};
@@ -102,11 +104,17 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The sets of a pool, fitted again under another noise model: the best of them, and all that hold one effect or none.
+    /// The sets of a ranked pool, fitted again under another noise model: the best of them, and of each effect the best
+    /// sets of every size that hold it.
     pub fn refit(&mut self, pool: &[CandidateModel], noise: &NoiseModel) -> Vec<CandidateModel> {
         self.options = noise.search_options();
-        let again = pool.iter().enumerate();
-        let again = again.filter(|(i, set)| *i < REFITTED || set.effects().len() < 2);
+        let mut seen = BTreeSet::new();
+        let again = pool.iter().enumerate().filter(|(i, set)| {
+            let size = set.effects().len();
+            let names: Vec<String> = set.effects().iter().map(name).collect();
+            let new = names.into_iter().filter(|name| seen.insert((size, name.clone())));
+            new.count() > 0 || size == 0 || *i < REFITTED
+        });
         let again: Vec<&CandidateModel> = again.map(|(_, set)| set).collect();
         let fitted = again.par_iter().filter_map(|set| self.fit(&set.fit.estimate).ok());
         let mut fitted: Vec<CandidateModel> = fitted.collect();

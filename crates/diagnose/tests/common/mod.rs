@@ -182,10 +182,8 @@ pub(crate) fn diagnosed_with_noise(
     let records: Vec<Record> = (1..4).map(of_number).collect();
     let withheld: Vec<String> = withheld.iter().map(ToString::to_string).collect();
     let request = Request {
-        model,
-        train: &records[..2],
-        check: &records[2..],
         withheld: &withheld,
+        ..Request::new(model, &records[..2], &records[2..])
     };
     diagnose(&request, &|_| {}).unwrap()
 }

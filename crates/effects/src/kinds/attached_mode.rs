@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Damper, Location, Mass, Model, Spring};
 
+use crate::prior::{Prior, usual_prior};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::sight::is_unseen;
 
@@ -132,6 +133,17 @@ impl Effect for AttachedMode {
                 )
                 .of_record(),
             ]
+        }
+    }
+
+    /// A mass that hangs on another is seldom heavier than it.
+    fn prior(&self, place: usize, scale: &SiteScale) -> Prior {
+        match place {
+            0 => Prior::Size {
+                median: 0.1 * scale.mass_kg,
+                log_std: 1.0,
+            },
+            _ => usual_prior(self, place, scale),
         }
     }
 
