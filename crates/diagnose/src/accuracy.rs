@@ -142,6 +142,7 @@ mod tests {
             first_index: 0,
             inputs: vec![input],
             measured: vec![None],
+            mended: simgap_simulate::Mended::default(),
         }
     }
 

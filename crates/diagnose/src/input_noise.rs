@@ -244,6 +244,7 @@ mod tests {
             first_index: 0,
             measured: vec![Some(vec![0.0; input.len()])],
             inputs: vec![input],
+            mended: simgap_simulate::Mended::default(),
         }
     }
 

@@ -117,6 +117,7 @@ mod tests {
                 first_index: 7,
                 inputs: vec![vec![1.0; len]],
                 measured: vec![None],
+                mended: simgap_simulate::Mended::default(),
             };
             let cut: Vec<Run> = stretches(&run).collect();
             assert_eq!(cut.len(), count, "{len}");

@@ -97,6 +97,7 @@ mod tests {
             first_index: 0,
             inputs: vec![(0..len).map(drive).collect()],
             measured: vec![None],
+            mended: simgap_simulate::Mended::default(),
         };
         let problem = Problem::new(model, vec![]).unwrap();
         let simulator = problem.simulator(&[], 0).unwrap();

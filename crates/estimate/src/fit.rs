@@ -326,7 +326,9 @@ pub(crate) struct Merit<'a> {
     problem: &'a Problem,
     independence: Vec<f64>,
     floor: Vec<f64>,
+    /// Samples of all runs, and those of each channel that were filled.
     count: f64,
+    filled: Vec<f64>,
 }
 
 impl<'a> Merit<'a> {
@@ -340,6 +342,7 @@ impl<'a> Merit<'a> {
                 .map(|s| (weights.accuracy * s).powi(2).max(f64::MIN_POSITIVE))
                 .collect(),
             count: problem.runs.iter().map(|run| run.len as f64).sum(),
+            filled: (0..std.len()).map(|c| problem.filled_count(c)).collect(),
         }
     }
 
@@ -370,8 +373,8 @@ impl<'a> Merit<'a> {
         let fit: f64 = variance
             .iter()
             .zip(&self.floor)
-            .zip(&self.independence)
-            .map(|((v, floor), rho)| 0.5 * rho * self.count * (v + floor).ln())
+            .zip(self.independence.iter().zip(&self.filled))
+            .map(|((v, floor), (rho, filled))| 0.5 * rho * (self.count - filled) * (v + floor).ln())
             .sum();
         let prior: f64 = (0..theta.len())
             .map(|i| 0.5 * ((theta[i] - layout.prior_mean[i]) / layout.prior_std[i]).powi(2))
