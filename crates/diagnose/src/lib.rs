@@ -60,6 +60,7 @@
 mod accuracy;
 mod afar;
 mod answer;
+pub mod audit;
 mod check;
 mod common_cause;
 pub mod compare;
