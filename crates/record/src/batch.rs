@@ -66,7 +66,8 @@ impl Batch {
         let stage = || {
             let target = target(path)?;
             let mut file = new_file_in(parent(&target))?;
-            file.write_all(text.as_bytes())?;
+            // The file itself: its wrapper would tell a random name.
+            file.as_file_mut().write_all(text.as_bytes())?;
             Ok((target, file.into_temp_path()))
         };
         let label = path.display().to_string();
