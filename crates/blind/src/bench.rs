@@ -66,6 +66,7 @@ impl Bench {
             len,
             inputs: self.signals.iter().map(sampled).collect(),
             measured: vec![None; model.outputs.len()],
+            mended: simgap_simulate::Mended::default(),
         }
     }
 
@@ -89,6 +90,7 @@ impl Bench {
             len: self.len,
             inputs: self.inputs(),
             measured: vec![None; model.outputs.len()],
+            mended: simgap_simulate::Mended::default(),
         }
     }
 

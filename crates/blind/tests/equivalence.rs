@@ -72,6 +72,7 @@ fn settled(model: &Model, effect: &Placed) -> Vec<f64> {
         len: u.len(),
         inputs: vec![u],
         measured: vec![None],
+        mended: simgap_simulate::Mended::default(),
     };
     let plant: Vec<Placed> = match effect.action() {
         Action::Output(_) => vec![],

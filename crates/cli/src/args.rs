@@ -120,6 +120,9 @@ pub(crate) struct CheckArgs {
     pub(crate) records: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) reading: RecordArgs,
+    /// Model file to look at the records with: sizes, signs, shifts, channels that nothing moves.
+    #[arg(long, value_name = "MODEL")]
+    pub(crate) model: Option<PathBuf>,
     /// What is printed.
     #[arg(long, value_enum, default_value = "human")]
     pub(crate) format: Format,

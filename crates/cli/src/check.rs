@@ -1,9 +1,10 @@
 //! `simgap check`: what records hold, before a model has to make sense of them.
 
 use serde::Serialize;
-use simgap_record::{Channel, Defect, QualityFinding, Quantity, UnitKind, quality};
+use simgap_record::{Channel, Defect, QualityFinding, Quantity, Record, UnitKind, quality};
 
 use crate::args::{CheckArgs, Format};
+use crate::audit::{self, is_beyond_quality};
 use crate::error::CliError;
 use crate::input::{self, Input};
 use crate::text::{STRONG, figure, named, shown, styled, table};
@@ -17,11 +18,21 @@ const INDENT: usize = 14;
 const SAME_RATE: f64 = 1e-3;
 
 pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {
+    let model = args.model.as_deref().map(input::model).transpose()?;
     let mut records = Vec::new();
+    let mut read = Vec::new();
     for path in &args.records {
-        let input = input::table(path, &args.reading)?;
-        records.push(Checked::new(path.display().to_string(), &input));
+        let Input { record, notes } = input::table(path, &args.reading)?;
+        records.push(Checked::new(path.display().to_string(), &record, notes));
+        read.push(record);
     }
+    let read: Vec<&Record> = read.iter().collect();
+    let mut findings = match &model {
+        Some(model) => simgap_diagnose::audit::audit(model, &read)?,
+        None => simgap_record::audit(&read),
+    };
+    // What a single column shows stands beside it.
+    findings.retain(is_beyond_quality);
     let differences = differences(&records);
     match args.format {
         Format::Human => {
@@ -30,13 +41,18 @@ pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {
             for difference in &differences {
                 named(&mut text, "but", difference, INDENT);
             }
-            say(&text);
+            if !findings.is_empty() && !differences.is_empty() {
+                text.push('\n');
+            }
+            text.push_str(&audit::told(&findings));
+            say(&text)?;
         }
         Format::Json => say_plain(&crate::json(&Answer {
             schema: SCHEMA,
             records,
             differences,
-        })?),
+            audit: findings.iter().map(audit::Entry::new).collect(),
+        })?)?,
     }
     Ok(())
 }
@@ -47,6 +63,8 @@ struct Answer {
     records: Vec<Checked>,
     /// What several records do not have in common.
     differences: Vec<String>,
+    /// What is odd about them together, and against the model if there is one.
+    audit: Vec<audit::Entry>,
 }
 
 #[derive(Serialize)]
@@ -94,8 +112,7 @@ struct Finding {
 }
 
 impl Checked {
-    fn new(file: String, input: &Input) -> Checked {
-        let record = &input.record;
+    fn new(file: String, record: &Record, notes: Vec<String>) -> Checked {
         let findings = quality(record);
         let of = |name: &str| {
             let mine = findings.iter().filter(|finding| finding.channel == name);
@@ -123,7 +140,7 @@ impl Checked {
                 .iter()
                 .map(|channel| Column::new(channel, of(&channel.name)))
                 .collect(),
-            notes: input.notes.clone(),
+            notes,
         }
     }
 }

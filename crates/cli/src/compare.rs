@@ -4,13 +4,13 @@ use std::path::Path;
 
 use simgap_diagnose::Status;
 use simgap_diagnose::compare::{Agreement, CompareRequest, Compared, Comparison, compare};
-use simgap_record::{write_csv_atomic, write_text_atomic};
 use simgap_report::lines::answer_lines;
 use simgap_report::page::{ReportContext, report_html};
 
 use crate::args::{CompareArgs, Format};
 use crate::error::CliError;
 use crate::folder::{Folder, not_an_input};
+use crate::manifest::Results;
 use crate::progress::Steps;
 use crate::text::{STRONG, figure, named, shown, styled};
 use crate::{input, json, say, say_plain};
@@ -53,14 +53,14 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
         write(&compared, &text, out)?;
     }
     match args.format {
-        Format::Json => say_plain(&text),
+        Format::Json => say_plain(&text)?,
         Format::Human => {
             let mut told = told(&compared);
             if let Some(out) = &args.out {
                 let page = out.join(FILES[1]);
                 told.push_str(&format!("report: {}\n", page.display()));
             }
-            say(&told);
+            say(&told)?;
         }
     }
     Ok(())
@@ -106,13 +106,13 @@ fn write(compared: &Compared, json: &str, out: &Path) -> Result<(), CliError> {
             columns.push(values);
         }
     }
-    let [data, html, csv] = FILES.map(|name| out.join(name));
-    let folder = Folder::make(out, &[], &[data.clone(), html.clone(), csv.clone()])?;
-    write_csv_atomic(&csv, &headers, &columns)?;
-    write_text_atomic(&html, &page)?;
-    write_text_atomic(&data, json)?;
-    folder.keep();
-    Ok(())
+    let folder = Folder::make(out, &[], &FILES.map(|name| out.join(name)))?;
+    let [data, html, csv] = FILES.map(Path::new);
+    let mut results = Results::new(out, "compare");
+    results.add_csv(csv, &headers, &columns)?;
+    results.add(html, &page)?;
+    results.add(data, json)?;
+    results.finish(folder)
 }
 
 /// What a person is told.

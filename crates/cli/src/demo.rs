@@ -1,6 +1,6 @@
 //! `simgap demo`: the main job on embedded data.
 
-use simgap_record::{ensure_writable_dir, write_text_atomic};
+use simgap_record::{Batch, ensure_writable_dir};
 
 use crate::args::{DemoArgs, DiagnoseArgs, Format};
 use crate::diagnose;
@@ -34,9 +34,11 @@ const FILES: [(&str, &str); 5] = [
 /// Writes the embedded files and diagnoses them as a user would.
 pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
     ensure_writable_dir(&args.out)?;
+    let mut batch = Batch::default();
     for (name, text) in FILES {
-        write_text_atomic(&args.out.join(name), text)?;
+        batch.add(&args.out.join(name), text)?;
     }
+    batch.commit()?;
     diagnose::run(&DiagnoseArgs {
         model: args.out.join("model.toml"),
         train: vec![args.out.join("train-1.csv"), args.out.join("train-2.csv")],

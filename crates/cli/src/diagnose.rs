@@ -4,17 +4,19 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use simgap_diagnose::audit::audit;
 use simgap_diagnose::{CheckSeries, Outcome, Request, diagnose};
 use simgap_model::Model;
-use simgap_record::{Record, write_csv_atomic, write_text_atomic};
+use simgap_record::Record;
 use simgap_report::page::{PictureFile, ReportInput, report};
 
 use crate::args::{DiagnoseArgs, Format};
 use crate::error::CliError;
 use crate::folder::Folder;
+use crate::manifest::Results;
 use crate::progress::Steps;
 use crate::text::command;
-use crate::{effects, input, say};
+use crate::{effects, input, repeated, say};
 
 /// Folder of the predictions, inside the folder of the results.
 const PREDICTIONS: &str = "predictions";
@@ -47,6 +49,7 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     };
     let (train, read_notes) = apart(read(&args.train)?);
     let (check, check_notes) = apart(read(&args.check)?);
+    repeated::refuse(&model, (&args.train, &train), (&args.check, &check))?;
     // A folder that cannot be written to is told before the work, not after it.
     let stems: Vec<String> = judged.iter().map(|path| stem(path)).collect();
     let folders = [PREDICTIONS, PICTURES];
@@ -58,6 +61,9 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         is_spent: &is_spent,
         ..Request::new(&model, &train, &check)
     };
+    let all: Vec<&Record> = train.iter().chain(&check).collect();
+    // What keeps the audit from its work is told by the diagnosis, in the same words as ever.
+    let findings = audit(&model, &all).unwrap_or_default();
     let mut outcome = in_pool(args.jobs, || {
         let steps = Steps::new();
         diagnose(&request, &|step| steps.show(step))
@@ -66,9 +72,12 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     let conversions = all.flat_map(|record| input::conversions(record, &model));
     outcome.diagnosis.notes.extend(conversions);
     let notes = &mut outcome.diagnosis.notes;
-    notes.splice(0..0, judged_by_its_own(args));
     notes.extend(input::idle_masses(&model));
     notes.extend(read_notes.into_iter().chain(check_notes));
+    let beyond_quality = findings
+        .iter()
+        .filter(|finding| crate::audit::is_beyond_quality(finding));
+    notes.extend(beyond_quality.map(ToString::to_string));
     let context = simgap_report::page::ReportContext {
         program_version: env!("CARGO_PKG_VERSION").to_string(),
         model_file: file_name(&args.model),
@@ -82,35 +91,18 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         write_text_atomic(&args.out.join("sets.json"), &crate::json(&outcome.sets)?)?;
     }
     match args.format {
-        Format::Json => crate::say_plain(&json),
+        Format::Json => crate::say_plain(&json)?,
         Format::Human => {
             let report = args.out.join("report.html");
             say(&format!(
-                "{}report: {}\n",
+                "{}{}report: {}\n",
+                crate::audit::told(&findings),
                 summary(&outcome),
                 report.display()
-            ));
+            ))?;
         }
     }
     Ok(())
-}
-
-/// A word on every record that is learned from and judged by.
-fn judged_by_its_own(args: &DiagnoseArgs) -> Vec<String> {
-    let place = |path: &PathBuf| path.canonicalize().ok();
-    let train: Vec<Option<PathBuf>> = args.train.iter().map(place).collect();
-    let both = args
-        .check
-        .iter()
-        .filter(|path| train.contains(&place(path)));
-    both.map(|path| {
-        format!(
-            "{} is given as --train and as --check: the figures on it are about data that it was \
-             fitted to",
-            path.display()
-        )
-    })
-    .collect()
 }
 
 /// Records, and the notes on all of them.
@@ -224,8 +216,7 @@ fn file_name(path: &Path) -> String {
         .unwrap_or_default()
 }
 
-/// Writes everything, each file beside its place and then renamed; everything is made before the
-/// first is written. Returns the text of diagnosis.json.
+/// Writes everything, all files together; everything is made before the first is written. Returns the text of diagnosis.json.
 pub(crate) fn write(
     outcome: &Outcome,
     model: &Model,
@@ -252,18 +243,19 @@ pub(crate) fn write(
     bounded(&outcome.series)?;
     let all = files(out, &stems, &report.pictures);
     let folder = Folder::make(out, &[PREDICTIONS, PICTURES], &all)?;
+    let mut results = Results::new(out, "diagnose");
     for series in &outcome.series {
-        write_predictions(series, out)?;
+        add_predictions(series, &mut results)?;
     }
-    write_text_atomic(&out.join("corrected.toml"), &corrected)?;
+    results.add(Path::new("corrected.toml"), &corrected)?;
     for picture in &report.pictures {
-        let [svg, csv] = picture_files(out, picture);
-        write_text_atomic(&svg, &picture.svg)?;
-        write_text_atomic(&csv, &picture.csv)?;
+        let [svg, csv] = picture_files(Path::new(""), picture);
+        results.add(&svg, &picture.svg)?;
+        results.add(&csv, &picture.csv)?;
     }
-    write_text_atomic(&out.join("report.html"), &report.html)?;
-    write_text_atomic(&out.join("diagnosis.json"), &json)?;
-    folder.keep();
+    results.add(Path::new("report.html"), &report.html)?;
+    results.add(Path::new("diagnosis.json"), &json)?;
+    results.finish(folder)?;
     Ok(json)
 }
 
@@ -287,7 +279,7 @@ fn bounded(series: &[CheckSeries]) -> Result<(), CliError> {
     Ok(())
 }
 
-fn write_predictions(series: &CheckSeries, out: &Path) -> Result<(), CliError> {
+fn add_predictions(series: &CheckSeries, results: &mut Results<'_>) -> Result<(), CliError> {
     let mut headers = vec!["t [s]".to_string()];
     let mut columns: Vec<&[f64]> = vec![&series.time_s];
     for channel in &series.channels {
@@ -300,6 +292,6 @@ fn write_predictions(series: &CheckSeries, out: &Path) -> Result<(), CliError> {
             columns.push(values);
         }
     }
-    let path = prediction_file(out, &stem_of(series));
-    Ok(write_csv_atomic(&path, &headers, &columns)?)
+    let file = prediction_file(Path::new(""), &stem_of(series));
+    results.add_csv(&file, &headers, &columns)
 }

@@ -24,10 +24,14 @@ pub(crate) fn run(args: &EffectsArgs) -> Result<(), CliError> {
         (Format::Json, _) => {
             let effects = entries.iter().map(|effect| entry(*effect)).collect();
             let schema = SCHEMA;
-            say_plain(&crate::json(&Catalogue { schema, effects })?);
+            say_plain(&crate::json(&Catalogue { schema, effects })?)?;
         }
-        (Format::Human, Some(_)) => entries.iter().for_each(|effect| say(&explained(*effect))),
-        (Format::Human, None) => say(&list()),
+        (Format::Human, Some(_)) => {
+            entries
+                .iter()
+                .try_for_each(|effect| say(&explained(*effect)))?;
+        }
+        (Format::Human, None) => say(&list())?,
     }
     Ok(())
 }

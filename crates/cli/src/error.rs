@@ -43,6 +43,20 @@ pub(crate) enum CliError {
         second: PathBuf,
         stem: String,
     },
+    #[error(
+        "{}: repeats the training record {} ({found}), needed is a check record that nothing is fitted to",
+        .check.display(), .train.display()
+    )]
+    CheckRepeats {
+        check: PathBuf,
+        train: PathBuf,
+        found: String,
+    },
+    #[error(
+        "{}: repeats the training record {} sample for sample, needed is each record once",
+        .second.display(), .first.display()
+    )]
+    TrainTwice { first: PathBuf, second: PathBuf },
     #[error("{}: is a folder, needed is a file or nothing there", .path.display())]
     FolderInPlace { path: PathBuf },
     #[error("{}: is there already, needed is another --out, or --force to overwrite it", .path.display())]
@@ -62,6 +76,8 @@ pub(crate) enum CliError {
     Jobs { found: usize, most: usize },
     #[error("the threads could not be started ({found}), needed is a smaller --jobs")]
     Threads { found: String },
+    #[error("stdout: cannot be written ({found}), needed is a place where the answer can go")]
+    Stdout { found: std::io::Error },
     #[error("the result could not be written as JSON ({found})")]
     Json { found: String },
     #[error(

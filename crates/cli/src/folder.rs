@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use simgap_record::ensure_writable_dir;
+use simgap_record::{ensure_replaceable, ensure_writable_dir};
 
 use crate::error::CliError;
 
@@ -13,13 +13,15 @@ pub(crate) struct Folder {
 }
 
 impl Folder {
-    /// Makes `out` and the folders `inside` it, writable, with no folder where one of `files` goes.
+    /// Makes `out` and the folders `inside` it, writable, with neither a folder nor a
+    /// device where one of `files` goes.
     pub(crate) fn make(out: &Path, inside: &[&str], files: &[PathBuf]) -> Result<Folder, CliError> {
         if let Some(taken) = files.iter().find(|file| file.is_dir()) {
             return Err(CliError::FolderInPlace {
                 path: taken.clone(),
             });
         }
+        files.iter().try_for_each(|file| ensure_replaceable(file))?;
         let mut folder = Folder { made: vec![] };
         for path in std::iter::once(out.to_path_buf()).chain(inside.iter().map(|i| out.join(i))) {
             let missing = path.ancestors().take_while(|part| {

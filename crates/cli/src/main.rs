@@ -3,6 +3,7 @@
 #![allow(clippy::print_stderr)]
 
 mod args;
+mod audit;
 mod check;
 mod compare;
 mod demo;
@@ -12,9 +13,11 @@ mod error;
 mod folder;
 mod init;
 mod input;
+mod manifest;
 mod pointer;
 mod progress;
 mod record_args;
+mod repeated;
 mod shell;
 mod simulate;
 mod text;
@@ -40,9 +43,11 @@ fn main() -> ExitCode {
         Err(error) => match usage::one_line(&error, &arguments) {
             Some(line) => return refuse(&line),
             None => {
-                // Help or version, as asked for; a closed pipe is nobody's fault.
-                let _ = error.print();
-                return ExitCode::SUCCESS;
+                // Help or version, as asked for.
+                return match written(error.print()) {
+                    Ok(()) => ExitCode::SUCCESS,
+                    Err(error) => refuse(&error.to_string()),
+                };
             }
         },
     };
@@ -54,10 +59,7 @@ fn main() -> ExitCode {
         Command::Init(args) => init::run(args),
         Command::Check(args) => check::run(args),
         Command::Effects(args) => effects::run(args),
-        Command::Completions(args) => {
-            shell::completions(args);
-            Ok(())
-        }
+        Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),
     };
     match done {
@@ -72,7 +74,8 @@ fn refuse(message: &str) -> ExitCode {
         .chars()
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
-    eprintln!("simgap: {line}");
+    // Where stderr cannot be written either, the exit status tells.
+    let _ = writeln!(std::io::stderr(), "simgap: {line}");
     // One line is promised; a person at a terminal is also shown the place.
     let err = anstream::stderr();
     let person = err.current_choice() != anstream::ColorChoice::Never;
@@ -84,18 +87,40 @@ fn refuse(message: &str) -> ExitCode {
 }
 
 /// Text on stdout, in colours where a terminal shows them and `NO_COLOR` does not forbid it.
-pub(crate) fn say(text: &str) {
-    print(anstream::stdout().lock(), text);
+pub(crate) fn say(text: &str) -> Result<(), CliError> {
+    print(anstream::stdout().lock(), text)
 }
 
 /// Text on stdout as it is.
-pub(crate) fn say_plain(text: &str) {
-    print(std::io::stdout().lock(), text);
+pub(crate) fn say_plain(text: &str) -> Result<(), CliError> {
+    print(std::io::stdout().lock(), text)
+}
+
+fn print(mut out: impl std::io::Write, text: &str) -> Result<(), CliError> {
+    let possible = can_be_written().and_then(|()| out.write_all(text.as_bytes()));
+    written(possible.and_then(|()| out.flush()))
+}
+
+/// The library takes a stdout that is open for reading alone for one that nobody looks at; the
+/// system does not.
+fn can_be_written() -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd as _;
+        let stdout = std::io::stdout().as_fd().try_clone_to_owned()?;
+        std::fs::File::from(stdout).write(&[]).map(drop)?;
+    }
+    Ok(())
 }
 
 /// A reader that closes the pipe early, as `head` does, has seen what it wanted.
-fn print(mut out: impl std::io::Write, text: &str) {
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+fn written(result: std::io::Result<()>) -> Result<(), CliError> {
+    match result {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(CliError::Stdout { found: error })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The text of `--format json`.

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::CommandFactory as _;
 use clap::builder::PossibleValuesParser;
 use simgap_effects::catalogue;
-use simgap_record::write_text_atomic;
+use simgap_record::Batch;
 
 use crate::args::{Cli, CompletionsArgs, ManArgs};
 use crate::error::CliError;
@@ -15,7 +15,7 @@ use crate::say_plain;
 /// Name of the program.
 const NAME: &str = "simgap";
 
-pub(crate) fn completions(args: &CompletionsArgs) {
+pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
     // The kinds of the catalogue are completed; elsewhere an unknown one has a better message than
     // the list of all.
     let kinds = || PossibleValuesParser::new(catalogue().iter().map(|effect| effect.kind()));
@@ -28,7 +28,7 @@ pub(crate) fn completions(args: &CompletionsArgs) {
         });
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, NAME, &mut script);
-    say_plain(&String::from_utf8_lossy(&script));
+    say_plain(&String::from_utf8_lossy(&script))
 }
 
 pub(crate) fn man(args: &ManArgs) -> Result<(), CliError> {
@@ -40,18 +40,18 @@ pub(crate) fn man(args: &ManArgs) -> Result<(), CliError> {
         pages.push((name, page(part.clone())));
     }
     let Some(out) = &args.out else {
-        say_plain(&pages.swap_remove(0).1);
-        return Ok(());
+        return say_plain(&pages.swap_remove(0).1);
     };
     let file = |name: &str| out.join(format!("{name}.1"));
     let files: Vec<_> = pages.iter().map(|(name, _)| file(name)).collect();
     let folder = Folder::make(out, &[], &files)?;
+    let mut batch = Batch::default();
     for (name, text) in &pages {
-        write_text_atomic(&file(name), text)?;
+        batch.add(&file(name), text)?;
     }
+    batch.commit()?;
     folder.keep();
-    say_plain(&listed(out, pages.len()));
-    Ok(())
+    say_plain(&listed(out, pages.len()))
 }
 
 fn listed(out: &Path, count: usize) -> String {

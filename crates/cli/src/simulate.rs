@@ -82,11 +82,12 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     let folder = Folder::make(folder, &[], &files)?;
     write_csv_atomic(&args.out, &headers, &columns)?;
     folder.keep();
-    say(&format!("{}\n", args.out.display()));
-    for note in all_notes {
-        say(&format!("note: {note}\n"));
-    }
-    Ok(())
+    let notes = all_notes.iter().map(|note| format!("note: {note}\n"));
+    say(&format!(
+        "{}\n{}",
+        args.out.display(),
+        notes.collect::<String>()
+    ))
 }
 
 /// The folder a file goes to.

@@ -25,7 +25,7 @@ pub(crate) fn excerpts(runs: &[Run], left: &[Vec<Vec<f64>>]) -> Vec<Run> {
             && left.iter().all(|rest| missed(rest, stride) < of_rest)
     };
     if runs.iter().zip(left).all(|(run, left)| is_smooth(run, left)) {
-        return runs.iter().map(|run| thinned(run, stride)).collect();
+        return runs.iter().map(|run| run.thinned(stride)).collect();
     }
     let share = SEARCH_SAMPLES as f64 / total as f64;
     runs.iter()
@@ -35,18 +35,6 @@ pub(crate) fn excerpts(runs: &[Run], left: &[Vec<Vec<f64>>]) -> Vec<Run> {
             run.slice(start..start + len)
         })
         .collect()
-}
-
-/// Every few samples of a run.
-fn thinned(run: &Run, stride: usize) -> Run {
-    let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
-    Run {
-        time_step_s: stride as f64 * run.time_step_s,
-        len: run.len.div_ceil(stride),
-        inputs: run.inputs.iter().map(|input| thin(input)).collect(),
-        measured: run.measured.iter().map(|m| m.as_deref().map(thin)).collect(),
-        ..run.clone()
-    }
 }
 
 /// What straight lines between every few samples miss of a signal, rms, over the rms about its mean.
@@ -95,6 +83,7 @@ mod tests {
             time_step_s: 0.001,
             len,
             first_index: 0,
+            mended: simgap_simulate::Mended::default(),
             inputs: vec![],
             measured: vec![Some((0..len).map(|n| value(0.001 * n as f64)).collect())],
         }

@@ -56,6 +56,7 @@ mod tests {
                 time_step_s: 0.5,
                 len,
                 first_index: 7,
+                mended: simgap_simulate::Mended::default(),
                 inputs: vec![vec![1.0; len]],
                 measured: vec![None],
             };

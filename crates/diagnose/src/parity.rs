@@ -89,6 +89,7 @@ mod tests {
             first_index: 0,
             inputs: vec![],
             measured: vec![Some((0..400).map(y).collect())],
+            mended: simgap_simulate::Mended::default(),
         }
     }
 

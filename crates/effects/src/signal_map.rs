@@ -68,6 +68,12 @@ pub trait SignalMap: Send + Sync {
         false
     }
 
+    /// Whether it lives in single samples as the converter took them (alternations, losses, spikes, another
+    /// clock): where samples were moved to an even time base there is nothing of it.
+    fn lives_in_single_samples(&self) -> bool {
+        false
+    }
+
     /// Whether samples are taken between those of the signal: interpolation smooths the noise on it.
     fn interpolates(&self) -> bool {
         false
@@ -78,6 +84,11 @@ pub trait SignalMap: Send + Sync {
 pub(crate) trait Retiming: Send + Sync {
     /// Where on the true signal the i-th sample is taken, in samples.
     fn position(&self, signal: &Sampled<'_>, i: usize) -> f64;
+
+    /// See [`SignalMap::lives_in_single_samples`].
+    fn counts_samples(&self) -> bool {
+        false
+    }
 }
 
 impl<T: Retiming> SignalMap for T {
@@ -87,6 +98,10 @@ impl<T: Retiming> SignalMap for T {
 
     fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
         signal.on_record(|i| self.position(&signal, i))
+    }
+
+    fn lives_in_single_samples(&self) -> bool {
+        self.counts_samples()
     }
 
     fn interpolates(&self) -> bool {

@@ -88,6 +88,7 @@ fn problem() -> Problem {
             len: SAMPLES,
             inputs: vec![(0..SAMPLES).map(wave).collect()],
             measured: vec![],
+            mended: simgap_simulate::Mended::default(),
         };
         let truth = Simulator::new(&model, &hidden, 1).unwrap();
         let mut signals = truth.predict(&run, &[0.0; 4]).unwrap();

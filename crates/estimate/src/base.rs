@@ -123,6 +123,10 @@ pub fn linearise_at<'a>(
         ..
     } = LinearSystem::at(problem, fit, weights)?;
     let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
+    let shares = weights.effective_share.iter();
+    let filled = shares
+        .enumerate()
+        .map(|(c, rho)| rho * problem.filled_count(c));
     let squared = |run: &Signals| inner(run, run, &channel_weights);
     let energy = at.discrepancy.iter().map(squared).sum();
     Ok(Base {
@@ -136,7 +140,7 @@ pub fn linearise_at<'a>(
         weights: channel_weights,
         factor: factorise(&hessian),
         gradient,
-        independent_samples: count * weights.effective_share.iter().sum::<f64>(),
+        independent_samples: count * weights.effective_share.iter().sum::<f64>() - filled.sum::<f64>(),
     })
 }
 

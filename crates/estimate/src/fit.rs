@@ -329,7 +329,9 @@ pub(crate) struct Merit<'a> {
     problem: &'a Problem,
     effective_share: Vec<f64>,
     floor: Vec<f64>,
+    /// Samples of all runs, and those of each channel that were filled.
     count: f64,
+    filled: Vec<f64>,
 }
 
 impl<'a> Merit<'a> {
@@ -344,6 +346,7 @@ impl<'a> Merit<'a> {
                 .map(|(s, floor)| (floor * s).powi(2).max(f64::MIN_POSITIVE))
                 .collect(),
             count: problem.runs.iter().map(|run| run.len as f64).sum(),
+            filled: (0..std.len()).map(|c| problem.filled_count(c)).collect(),
         }
     }
 
@@ -374,8 +377,8 @@ impl<'a> Merit<'a> {
         let fit: f64 = variance
             .iter()
             .zip(&self.floor)
-            .zip(&self.effective_share)
-            .map(|((v, floor), rho)| 0.5 * rho * self.count * (v + floor).ln())
+            .zip(self.effective_share.iter().zip(&self.filled))
+            .map(|((v, floor), (rho, filled))| 0.5 * rho * (self.count - filled) * (v + floor).ln())
             .sum();
         let value = fit + self.prior(layout, theta);
         (if value.is_nan() { f64::INFINITY } else { value }, variance)

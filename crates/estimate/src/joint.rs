@@ -13,6 +13,9 @@ use crate::{Candidate, EstimateError};
 /// Pairs that are scored with every third effect.
 const EXTENDED: usize = 12;
 
+/// Sets with one candidate that are chosen at the most.
+const OFTEN: usize = 4;
+
 /// What some effects would bring together.
 #[derive(Clone)]
 pub struct JointScore {
@@ -84,9 +87,30 @@ pub fn joint_scores(
         }
     }
     sort(&mut threes);
-    let best = |list: Vec<(Vec<usize>, JointScore)>| list.into_iter().take(most);
-    let all = best(pairs).chain(best(threes));
-    Ok(all.map(|(_, score)| score).collect())
+    let mut all = various(pairs, &columns, most);
+    all.extend(various(threes, &columns, most));
+    Ok(all)
+}
+
+/// The best of some sets in which no candidate is met again and again.
+fn various(
+    list: Vec<(Vec<usize>, JointScore)>,
+    columns: &[Column<'_>],
+    most: usize,
+) -> Vec<JointScore> {
+    let mut met: Vec<&Candidate> = vec![];
+    let mut chosen = vec![];
+    for (set, score) in list {
+        let members = || set.iter().map(|k| columns[*k].candidate);
+        let is_new = |candidate: &&Candidate| {
+            met.iter().filter(|known| known == &candidate).count() < OFTEN
+        };
+        if chosen.len() < most && members().all(|candidate| is_new(&candidate)) {
+            met.extend(members());
+            chosen.push(score);
+        }
+    }
+    chosen
 }
 
 fn sort(list: &mut [(Vec<usize>, JointScore)]) {

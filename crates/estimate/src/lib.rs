@@ -48,6 +48,7 @@
 //!     first_index: 0,
 //!     inputs: vec![(0..400).map(|n| (0.002 * f64::from(n * n)).sin()).collect()],
 //!     measured: vec![None],
+//!     mended: simgap_simulate::Mended::default(),
 //! };
 //! let truth = Simulator::new(&model, &[spring(1.1)?], 1)?.predict(&run, &[0.001, 0.0])?;
 //! run.measured = truth.into_iter().map(Some).collect();

@@ -154,7 +154,7 @@ pub(crate) fn discrepancy(problem: &Problem, run: usize, mut predicted: Signals)
             None => signal.fill(0.0),
         }
     }
-    problem.whiten(&mut predicted);
+    problem.whiten(run, &mut predicted);
     predicted
 }
 
@@ -402,6 +402,7 @@ at = "block"
             len: 400,
             inputs: vec![(0..400).map(|k| (0.13 * f64::from(k)).sin()).collect()],
             measured: vec![Some(vec![0.0; 400])],
+            mended: simgap_simulate::Mended::default(),
         };
         let problem = Problem::new(&model, vec![run]).unwrap();
         let at = Location::Between(["block".into(), "ground".into()]);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use simgap_effects::{Family, Placed, Prior, SiteScale, catalogue, sites};
+use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue, sites};
 use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, OutputKind};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
@@ -116,9 +116,13 @@ impl Problem {
         self.whitening != Whitening::default()
     }
 
-    /// Filters the signals of a run, channel by channel.
-    pub(crate) fn whiten(&self, signals: &mut [Vec<f64>]) {
+    /// Filters the signals of a run, channel by channel. At a sample that was filled nothing is known, so that the signal
+    /// is there what those before it let expect, and zero after the filter.
+    pub(crate) fn whiten(&self, run: usize, signals: &mut [Vec<f64>]) {
         for (channel, signal) in signals.iter_mut().enumerate() {
+            for sample in self.runs[run].filled(channel) {
+                signal[sample] = self.whitening.expected(channel, &signal[..sample]);
+            }
             self.whitening.apply(channel, signal);
         }
     }
@@ -180,15 +184,27 @@ impl Problem {
         self.candidates(|family| family == Family::NominalParameter)
     }
 
-    /// Every catalogue entry of the chosen families at every place it can sit.
+    /// Every catalogue entry of the chosen families at every place it can sit; of those that live in single samples none
+    /// where every run was resampled.
     pub fn candidates(&self, family: impl Fn(Family) -> bool) -> Vec<Candidate> {
         let mut candidates = Vec::new();
-        for &effect in catalogue().iter().filter(|effect| family(effect.family())) {
+        let resampled =
+            self.runs.iter().all(|run| run.mended.is_resampled) && !self.runs.is_empty();
+        let is_sought = |effect: &dyn Effect| {
+            family(effect.family()) && !(resampled && lives_in_single_samples(effect))
+        };
+        for &effect in catalogue().iter().filter(|effect| is_sought(**effect)) {
             for at in sites(&self.model, effect.site()) {
                 candidates.push(Candidate { effect, at });
             }
         }
         candidates
+    }
+
+    /// Samples of a channel that were filled, over all runs.
+    pub(crate) fn filled_count(&self, channel: usize) -> f64 {
+        let runs = self.runs.iter();
+        runs.map(|run| run.filled(channel).count() as f64).sum()
     }
 
     /// Standard deviation of each output over all runs, model units: what discrepancies are compared with, and filtered like
@@ -260,6 +276,16 @@ impl Problem {
             })
             .collect()
     }
+}
+
+/// Whether an effect lives in single samples as the converter took them.
+fn lives_in_single_samples(effect: &dyn Effect) -> bool {
+    let starts = effect.starts(&SiteScale::plain(1.0, 1.0, 1.0));
+    let acts = |values: &Vec<f64>| match effect.action(values) {
+        Action::Output(map) | Action::Sampling(map) => map.lives_in_single_samples(),
+        _ => false,
+    };
+    starts.first().is_some_and(acts)
 }
 
 /// Root mean square about the mean.

@@ -13,28 +13,45 @@ use crate::Problem;
 use crate::linearise::Signals;
 
 /// The samples within reach, by run and channel.
-pub(crate) struct Reach(Vec<Vec<Range<usize>>>);
+pub(crate) struct Reach {
+    ranges: Vec<Vec<Range<usize>>>,
+    /// For each channel, the samples in these that were filled: they count for nothing.
+    filled: Vec<f64>,
+}
 
 impl Reach {
     /// With effects on top of those of the nominal model.
     pub(crate) fn of(problem: &Problem, effects: &[Placed]) -> Reach {
         let runs = 0..problem.runs.len();
-        Reach(runs.map(|run| of_run(problem, effects, run)).collect())
+        let ranges: Vec<Vec<Range<usize>>> =
+            runs.map(|run| of_run(problem, effects, run)).collect();
+        let filled = (0..problem.model.outputs.len()).map(|channel| {
+            let runs = problem.runs.iter().zip(&ranges);
+            let within = runs.map(|(run, ranges)| {
+                let filled = run.filled(channel);
+                filled
+                    .filter(|sample| ranges[channel].contains(sample))
+                    .count()
+            });
+            within.sum::<usize>() as f64
+        });
+        let filled = filled.collect();
+        Reach { ranges, filled }
     }
 
     /// Sets what is out of reach to zero.
     pub(crate) fn keep(&self, run: usize, signals: &mut Signals) {
-        for (signal, range) in signals.iter_mut().zip(&self.0[run]) {
+        for (signal, range) in signals.iter_mut().zip(&self.ranges[run]) {
             let end = range.end.min(signal.len());
             signal[end..].fill(0.0);
             signal[..range.start.min(end)].fill(0.0);
         }
     }
 
-    /// Samples of a channel within reach.
+    /// Measured samples of a channel within reach.
     pub(crate) fn count(&self, channel: usize) -> f64 {
-        let lengths = self.0.iter().map(|run| run[channel].len());
-        lengths.sum::<usize>() as f64
+        let lengths = self.ranges.iter().map(|run| run[channel].len());
+        lengths.sum::<usize>() as f64 - self.filled[channel]
     }
 }
 
@@ -60,7 +77,11 @@ fn of_run(problem: &Problem, effects: &[Placed], number: usize) -> Vec<Range<usi
         placed
             .filter(|placed| placed.at == here)
             .map(|placed| match placed.in_record(number).action() {
-                Action::Output(map) | Action::Sampling(map) => map.reach(signal),
+                Action::Output(map) | Action::Sampling(map)
+                    if !(run.mended.is_resampled && map.lives_in_single_samples()) =>
+                {
+                    map.reach(signal)
+                }
                 _ => 0..run.len,
             })
             // Shifts one after the other add up.
@@ -95,6 +116,7 @@ mod tests {
             first_index: 0,
             inputs: vec![],
             measured: vec![Some(vec![1.0; 800])],
+            mended: simgap_simulate::Mended::default(),
         };
         Problem::new(&model, vec![run]).unwrap()
     }
@@ -110,7 +132,7 @@ mod tests {
     #[test]
     fn late_channels_lose_the_beginning_and_early_ones_the_end() {
         let problem = problem();
-        let reach = |effects: &[Placed]| Reach::of(&problem, effects).0[0][0].clone();
+        let reach = |effects: &[Placed]| Reach::of(&problem, effects).ranges[0][0].clone();
         assert_eq!(reach(&[]), 0..800);
         assert_eq!(reach(&[shift("sensor_delay", 0.025)]), 3..800);
         assert_eq!(reach(&[shift("clock_skew", -0.01)]), 0..800);

@@ -41,6 +41,13 @@ impl Whitening {
         self.0.get(channel).map_or(0, Vec::len)
     }
 
+    /// What the samples before let expect of the next one, −Σ a_k r_{n−k} of (1).
+    pub(crate) fn expected(&self, channel: usize, before: &[f64]) -> f64 {
+        let coefficients = self.0.get(channel).map_or(&[][..], Vec::as_slice);
+        let products = before.iter().rev().zip(coefficients).map(|(r, a)| a * r);
+        -products.sum::<f64>()
+    }
+
     /// Filters a signal of a channel, (1), with zeros before its beginning.
     pub fn apply(&self, channel: usize, signal: &mut [f64]) {
         let Some(coefficients) = self.0.get(channel).filter(|a| !a.is_empty()) else {

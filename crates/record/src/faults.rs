@@ -98,6 +98,18 @@ pub enum MendFault {
         /// Most that may be missing, per cent.
         most_percent: u32,
     },
+    /// The mark of an instrument for an overload or no reading, where nothing is mended.
+    #[error(
+        "{at}: column '{column}' holds {found:e}, the mark of an instrument for an overload or no reading, but a measured value is needed; --mend takes it as missing"
+    )]
+    Overload {
+        /// Line or row.
+        at: Place,
+        /// Name of the column.
+        column: String,
+        /// The mark.
+        found: f64,
+    },
     /// A gap too long to be bridged.
     #[error("{at}: the time step is {} s here and {} s as a rule, but a gap of at most {most} steps can be bridged; split the record there", digits(*found), digits(*usual))]
     Gap {

@@ -8,7 +8,7 @@
 //! own.
 //!
 //! A CSV of the contract's own form is read strictly. In a file of a logger or a measurement
-//! program the layout is guessed, missing samples are held and uneven stamps resampled, and every
+//! program the layout is guessed, missing samples are filled and uneven stamps resampled, and every
 //! [`Note`] of a [`Reading`] says one of these things; [`ReadOptions`] chooses columns, names and
 //! units ([`ChannelMap`]) and whether faults are made good ([`Mend`]).
 //!
@@ -27,6 +27,7 @@
 //! ```
 
 mod arrays;
+mod batch;
 mod bytes;
 mod channel;
 #[cfg(feature = "parquet")]
@@ -35,6 +36,7 @@ mod csv_header;
 mod csv_read;
 mod error;
 mod faults;
+mod fill;
 #[cfg(any(feature = "matlab73", feature = "parquet"))]
 mod foreign;
 mod format;
@@ -44,12 +46,15 @@ mod logger;
 mod map;
 mod mat5;
 mod mend;
+mod mended;
 mod note;
 mod open;
+mod overload;
 mod quality;
 mod raw;
 mod record;
 mod resample;
+mod same;
 mod select;
 mod tdms;
 mod time_base;
@@ -58,6 +63,7 @@ mod uff_lines;
 mod unit;
 mod write;
 
+pub use batch::{Batch, ensure_replaceable};
 pub use channel::{Channel, Conversion};
 pub use csv_read::{
     MAX_LINE_BYTES, MAX_ROWS, parse_csv, read_csv, read_csv_channels, read_csv_some,
@@ -70,6 +76,7 @@ pub use note::Note;
 pub use open::{MAX_FILE_BYTES, parse_file, read_file};
 pub use quality::{Defect, Edge, QualityFinding, quality};
 pub use record::{MIN_ROWS, Record};
+pub use same::{AuditFinding, AuditTopic, audit, found_within};
 pub use select::{Mend, ReadOptions, Reading};
 pub use time_base::UNEVEN_FRACTION;
 pub use unit::{Quantity, Unit, UnitKind};

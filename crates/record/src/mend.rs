@@ -2,7 +2,10 @@
 
 use crate::error::RecordError;
 use crate::faults::MendFault;
+use crate::fill::fill;
+use crate::mended::Mended;
 use crate::note::Note;
+use crate::overload::taken_as_missing;
 use crate::record::{Origin, Record};
 use crate::resample::{on_grid, trusted_hz, usual_step};
 use crate::time_base::{TimeFault, check_even};
@@ -36,8 +39,15 @@ pub(crate) fn finish(
         mut channels,
     } = columns;
     if mend {
+        let mut mended = Mended::default();
         for channel in &mut channels {
-            notes.extend(hold(origin, channel)?);
+            let marks = taken_as_missing(channel);
+            notes.extend((marks > 0).then(|| Note::Overloaded {
+                channel: channel.name.clone(),
+                marks,
+            }));
+            mended.push(&channel.values);
+            notes.extend(filled(origin, channel)?);
         }
         let sound = time.iter().all(|t| t.is_finite())
             && channels
@@ -52,22 +62,24 @@ pub(crate) fn finish(
                 notes.push(resample(&in_seconds, &mut channels, step, rows));
                 let start = in_seconds[0];
                 time = (0..rows).map(|k| start + k as f64 * step).collect();
-                return Record::from_file(name, origin, &Unit::parse("s"), time, channels);
+                let record = Record::from_file(name, origin, &Unit::parse("s"), time, channels)?;
+                return Ok(record.with_mended(mended.resampled(&in_seconds, step, rows)));
             }
         }
+        let record = Record::from_file(name, origin, &time_unit, time, channels)?;
+        return Ok(record.with_mended(mended));
     }
     Record::from_file(name, origin, &time_unit, time, channels)
 }
 
-/// The last value in place of each that is missing, the first one before it.
-fn hold(origin: &Origin<'_>, channel: &mut Channel) -> Result<Option<Note>, RecordError> {
+/// Fills what is missing, see [`fill`].
+fn filled(origin: &Origin<'_>, channel: &mut Channel) -> Result<Option<Note>, RecordError> {
     let of = channel.values.len();
     let missing = channel.values.iter().filter(|value| value.is_nan()).count();
     if missing == 0 {
         return Ok(None);
     }
-    let first = channel.values.iter().find(|value| !value.is_nan()).copied();
-    let (Some(mut last), true) = (first, missing as f64 <= MOST_MISSING * of as f64) else {
+    if missing == of || missing as f64 > MOST_MISSING * of as f64 {
         return Err(RecordError::Mending {
             file: origin.file.to_owned(),
             fault: MendFault::TooManyMissing {
@@ -77,19 +89,9 @@ fn hold(origin: &Origin<'_>, channel: &mut Channel) -> Result<Option<Note>, Reco
                 most_percent: (100.0 * MOST_MISSING).round() as u32,
             },
         });
-    };
-    let (mut run, mut longest_run) = (0, 0);
-    for value in &mut channel.values {
-        if value.is_nan() {
-            *value = last;
-            run += 1;
-            longest_run = longest_run.max(run);
-        } else {
-            last = *value;
-            run = 0;
-        }
     }
-    Ok(Some(Note::Held {
+    let longest_run = fill(&mut channel.values);
+    Ok(Some(Note::Filled {
         channel: channel.name.clone(),
         missing,
         of,

@@ -72,8 +72,15 @@ pub enum Note {
         /// Why.
         because: String,
     },
-    /// Missing samples, in whose place the last value stands.
-    Held {
+    /// Marks of an instrument for an overload or no reading, taken as missing samples.
+    Overloaded {
+        /// Name of the channel.
+        channel: String,
+        /// Samples that hold one.
+        marks: usize,
+    },
+    /// Missing samples, in whose place the values of a curve stand.
+    Filled {
         /// Name of the channel.
         channel: String,
         /// Samples missing.
@@ -158,15 +165,21 @@ impl fmt::Display for Note {
             Note::LeftOut { column, because } => {
                 write!(f, "column {} left out: {because}", quoted(column))
             }
-            Note::Held {
+            Note::Overloaded { channel, marks } => write!(
+                f,
+                "{marks} samples of {} hold the mark of an instrument for an overload or no reading \
+                 (9.9e37 or 9.91e37); taken as missing",
+                quoted(channel)
+            ),
+            Note::Filled {
                 channel,
                 missing,
                 of,
                 longest_run,
             } => write!(
                 f,
-                "{missing} of {of} samples of {} are missing, at most {longest_run} in a row; the \
-                 last value before is held in their place",
+                "{missing} of {of} samples of {} are missing, at most {longest_run} in a row; a \
+                 curve through those beside them stands in their place",
                 quoted(channel)
             ),
             Note::Resampled { .. } => self.resampled(f),

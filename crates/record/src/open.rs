@@ -28,7 +28,7 @@ const HEAD_BYTES: usize = 1 << 16;
 /// and strictly, as [`crate::read_csv`] does. Any other table of text is taken apart by its looks:
 /// separator, decimal sign, lines before the header, a row of units, dates and times of day, words
 /// for missing values, encoding. What was guessed is told in [`Reading::notes`]. In such files, and
-/// in those of measurement programs, missing samples are replaced by the last one before and an
+/// in those of measurement programs, missing samples are filled by a curve through their neighbours and an
 /// uneven time base is resampled, and told too; [`Mend`] changes that.
 ///
 /// ```

@@ -6,6 +6,9 @@ use std::ops::Range;
 
 use crate::channel::{Channel, Conversion};
 use crate::error::{Place, RecordError, name_list};
+use crate::faults::MendFault;
+use crate::mended::Mended;
+use crate::overload::is_mark;
 use crate::time_base::{TimeFault, check_even};
 use crate::{Quantity, Unit};
 
@@ -37,6 +40,7 @@ pub struct Record {
     time_step_s: f64,
     time_conversion: Option<Conversion>,
     channels: Vec<Channel>,
+    mended: Mended,
 }
 
 /// How the rows of a record are named in messages.
@@ -79,6 +83,7 @@ impl Record {
             time_step_s,
             time_conversion: None,
             channels,
+            mended: Mended::default(),
         })
     }
 
@@ -132,7 +137,26 @@ impl Record {
             time_step_s,
             time_conversion,
             channels,
+            mended: Mended::default(),
         })
+    }
+
+    pub(crate) fn with_mended(self, mended: Mended) -> Record {
+        Record { mended, ..self }
+    }
+
+    /// Which samples of the channel of that name were missing and filled; `None` where none was.
+    #[must_use]
+    pub fn filled(&self, name: &str) -> Option<&[bool]> {
+        let channel = self.channels.iter().position(|c| c.name == name)?;
+        self.mended.filled(channel)
+    }
+
+    /// Whether the samples stand at other times than they were taken at: an uneven time base was
+    /// resampled. Single samples then say nothing of the chain that measured them.
+    #[must_use]
+    pub fn is_resampled(&self) -> bool {
+        self.mended.is_resampled()
     }
 
     /// Name of the record: the file name, such as `C.csv`, of a record read from a file.
@@ -260,6 +284,7 @@ impl Record {
             time_step_s: self.time_step_s,
             time_conversion: self.time_conversion.clone(),
             channels: channels.collect(),
+            mended: self.mended.slice(start..end),
         })
     }
 }
@@ -291,6 +316,7 @@ fn checked_step(
             });
         }
         check_finite(origin, &channel.name, &channel.values)?;
+        check_marks(origin, channel)?;
     }
     check_finite(origin, origin.time_name, time_s)?;
     check_even(time_s).map_err(|fault| match fault {
@@ -323,6 +349,20 @@ fn check_names(origin: &Origin<'_>, channels: &[Channel]) -> Result<(), RecordEr
         }
     }
     Ok(())
+}
+
+fn check_marks(origin: &Origin<'_>, channel: &Channel) -> Result<(), RecordError> {
+    match channel.values.iter().position(|value| is_mark(*value)) {
+        None => Ok(()),
+        Some(row) => Err(RecordError::Mending {
+            file: origin.file.to_owned(),
+            fault: MendFault::Overload {
+                at: (origin.row)(row),
+                column: channel.name.clone(),
+                found: channel.values[row],
+            },
+        }),
+    }
 }
 
 fn check_finite(origin: &Origin<'_>, column: &str, values: &[f64]) -> Result<(), RecordError> {

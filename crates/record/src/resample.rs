@@ -22,6 +22,8 @@
 const ONE_PERCENT_X: f64 = 0.409_8;
 /// A step is a gap, and no part of the usual spacing, when it is longer than so many medians.
 const GAP_MEDIANS: f64 = 1.5;
+/// This near to a stamp, in steps, its value is taken as it is.
+pub(crate) const AT_STAMP: f64 = 1e-6;
 
 /// Highest frequency of which a sine loses at most 1 % between stamps so far apart, Hz.
 pub(crate) fn trusted_hz(longest_s: f64) -> f64 {
@@ -62,6 +64,12 @@ pub(crate) fn on_grid(time_s: &[f64], values: &[f64], step_s: f64, rows: usize) 
 fn between(time_s: &[f64], values: &[f64], k: usize, t: f64) -> f64 {
     let h = time_s[k + 1] - time_s[k];
     let s = ((t - time_s[k]) / h).clamp(0.0, 1.0);
+    if s <= AT_STAMP {
+        return values[k];
+    }
+    if s >= 1.0 - AT_STAMP {
+        return values[k + 1];
+    }
     let (m0, m1) = (slope(time_s, values, k), slope(time_s, values, k + 1));
     let r = 1.0 - s;
     (1.0 + 2.0 * s) * r * r * values[k]

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::Path;
 
-use crate::RecordError;
 use crate::error::Place;
+use crate::{Batch, RecordError};
 
 /// Below this magnitude, and from [`EXPONENT_FROM`] on, numbers are written with an exponent.
 const EXPONENT_BELOW: f64 = 1e-5;
@@ -38,6 +38,15 @@ pub fn write_csv_atomic(
     headers: &[String],
     columns: &[&[f64]],
 ) -> Result<(), RecordError> {
+    write_text_atomic(path, &checked_csv(path, headers, columns)?)
+}
+
+/// Columns as CSV, checked to make a readable file.
+pub(crate) fn checked_csv(
+    path: &Path,
+    headers: &[String],
+    columns: &[&[f64]],
+) -> Result<String, RecordError> {
     let file = || path.display().to_string();
     if headers.len() != columns.len() {
         let (headers, columns) = (headers.len(), columns.len());
@@ -69,7 +78,7 @@ pub fn write_csv_atomic(
             });
         }
     }
-    write_text_atomic(path, &csv_text(headers, columns))
+    Ok(csv_text(headers, columns))
 }
 
 fn csv_text(headers: &[String], columns: &[&[f64]]) -> String {
@@ -117,31 +126,28 @@ fn push_number(text: &mut String, value: f64) {
     };
 }
 
-/// Writes a text file, beside the target first and then renamed.
+/// Writes a text file, beside the target first and then renamed; see [`Batch`].
 ///
 /// # Errors
 ///
-/// [`RecordError::Unwritable`] when the system refuses; the target is then as it was.
+/// [`RecordError::Unwritable`] when the place is no regular file, or when the system refuses; the
+/// target is then as it was.
 pub fn write_text_atomic(path: &Path, text: &str) -> Result<(), RecordError> {
-    replace(path, text.as_bytes()).map_err(|source| RecordError::Unwritable {
-        path: path.display().to_string(),
-        source,
-    })
+    let mut batch = Batch::default();
+    batch.add(path, text)?;
+    batch.commit()
 }
 
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let dir = match path.parent() {
+/// The folder that a file is in.
+pub(crate) fn parent(path: &Path) -> &Path {
+    match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
-    };
-    let mut file = new_file_in(dir)?;
-    file.write_all(bytes)?;
-    file.persist(path).map_err(|refused| refused.error)?;
-    Ok(())
+    }
 }
 
 /// A file beside the target that vanishes unless it is renamed.
-fn new_file_in(dir: &Path) -> io::Result<tempfile::NamedTempFile> {
+pub(crate) fn new_file_in(dir: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".simgap-").suffix(".part");
     #[cfg(unix)]

@@ -64,7 +64,7 @@ mod step;
 
 pub use batch::{Job, Prediction, predict_all};
 pub use error::SimulateError;
-pub use run::{Run, input_quantity, output_quantity, output_unit};
+pub use run::{Mended, Run, input_quantity, output_quantity, output_unit};
 pub use simgap_integrate::exact::lanes::LANES;
 pub use simulator::{MemberPath, Simulator};
 pub use step::substeps_for;

@@ -23,6 +23,30 @@ pub struct Run {
     /// One signal for each output of the model, in model units; `None` where the record has no
     /// such column.
     pub measured: Vec<Option<Vec<f64>>>,
+    /// Which of these samples were not measured where they stand.
+    pub mended: Mended,
+}
+
+/// Which samples of a run were not measured where they stand; none by default.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Mended {
+    /// For each output, whether a sample was missing and filled; empty where none was.
+    pub filled: Vec<Vec<bool>>,
+    /// Whether an uneven time base was resampled: single samples say nothing of the chain then.
+    pub is_resampled: bool,
+}
+
+impl Mended {
+    fn of(model: &Model, record: &Record) -> Mended {
+        let filled = model.outputs.iter().map(|output| {
+            let filled = record.filled(&output.channel);
+            filled.map(<[bool]>::to_vec).unwrap_or_default()
+        });
+        Mended {
+            filled: filled.collect(),
+            is_resampled: record.is_resampled(),
+        }
+    }
 }
 
 impl Run {
@@ -62,6 +86,7 @@ impl Run {
             first_index: 0,
             inputs,
             measured,
+            mended: Mended::of(model, record),
         })
     }
 
@@ -74,6 +99,24 @@ impl Run {
             record.require(&output.channel)?;
         }
         Run::new(model, record)
+    }
+
+    /// The run at a lower rate: its first sample and every `stride`-th after it.
+    #[must_use]
+    pub fn thinned(&self, stride: usize) -> Run {
+        let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
+        let filled = self.mended.filled.iter();
+        Run {
+            time_step_s: stride as f64 * self.time_step_s,
+            len: self.len.div_ceil(stride),
+            inputs: self.inputs.iter().map(|input| thin(input)).collect(),
+            measured: self.measured.iter().map(|m| m.as_deref().map(thin)).collect(),
+            mended: Mended {
+                filled: filled.map(|mask| mask.iter().copied().step_by(stride).collect()).collect(),
+                ..self.mended.clone()
+            },
+            ..self.clone()
+        }
     }
 
     /// A stretch of the run, on the same clock.
@@ -94,7 +137,27 @@ impl Run {
                 .iter()
                 .map(|signal| signal.as_ref().map(cut))
                 .collect(),
+            mended: Mended {
+                filled: self
+                    .mended
+                    .filled
+                    .iter()
+                    .map(|filled| filled.get(start..end).unwrap_or_default().to_vec())
+                    .collect(),
+                is_resampled: self.mended.is_resampled,
+            },
         }
+    }
+
+    /// The samples of an output that were missing and filled, in rising order: they count for nothing.
+    pub fn filled(&self, output: usize) -> impl DoubleEndedIterator<Item = usize> + '_ {
+        let filled = self
+            .mended
+            .filled
+            .get(output)
+            .map_or(&[][..], Vec::as_slice);
+        let filled = filled.iter().take(self.len).enumerate();
+        filled.filter_map(|(sample, filled)| filled.then_some(sample))
     }
 
     /// Length, s.

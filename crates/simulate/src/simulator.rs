@@ -245,7 +245,7 @@ impl Simulator {
         for (output, map) in self
             .output_maps
             .iter()
-            .filter(|(_, map)| keep(map.as_ref()))
+            .filter(|(_, map)| keep(map.as_ref()) && Simulator::has_samples_of(run, map.as_ref()))
         {
             let signal = Sampled {
                 values: &predicted[*output],
@@ -257,6 +257,11 @@ impl Simulator {
             predicted[*output] = map.apply(signal);
         }
         predicted
+    }
+
+    /// Whether a map has the samples in a run that it lives in.
+    fn has_samples_of(run: &Run, map: &dyn SignalMap) -> bool {
+        !(run.mended.is_resampled && map.lives_in_single_samples())
     }
 
     /// Adds what the force at a sample accelerates beyond that of the straight lines, `gᵀ Δf` with g the output of

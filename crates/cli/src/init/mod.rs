@@ -45,8 +45,7 @@ pub(crate) fn run(args: &InitArgs) -> Result<(), CliError> {
         error,
     })?;
     let Some(out) = &args.out else {
-        say_plain(&text);
-        return Ok(());
+        return say_plain(&text);
     };
     let parent = match out.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -55,8 +54,7 @@ pub(crate) fn run(args: &InitArgs) -> Result<(), CliError> {
     let folder = Folder::make(parent, &[], std::slice::from_ref(out))?;
     write_text_atomic(out, &text)?;
     folder.keep();
-    say(&told(args, &roles, record.as_ref(), &notes, out));
-    Ok(())
+    say(&told(args, &roles, record.as_ref(), &notes, out))
 }
 
 /// What was taken for what, and what to do now.

@@ -116,6 +116,7 @@ pub(crate) fn record(
         first_index: 0,
         inputs: inputs.collect(),
         measured: vec![],
+        mended: simgap_simulate::Mended::default(),
     };
     let simulator = Simulator::new(model, effects, 1).unwrap();
     let rest = vec![0.0; simulator.state_len()];

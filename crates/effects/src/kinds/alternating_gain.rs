@@ -33,6 +33,10 @@ impl SignalMap for Alternation {
         let values = signal.values.iter().enumerate();
         values.map(|(i, value)| (1.0 + error(i)) * value).collect()
     }
+
+    fn lives_in_single_samples(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for AlternatingGain {

@@ -25,6 +25,10 @@ impl Retiming for Alternation {
         let shift_s = if is_even { self.even_s } else { self.odd_s };
         i as f64 + shift_s / signal.time_step_s
     }
+
+    fn counts_samples(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for AlternatingTiming {

@@ -26,6 +26,10 @@ impl Retiming for Skew {
         // A slice of a record begins with the shift that has come together by then.
         i as f64 + self.0 * (signal.first_index + i) as f64
     }
+
+    fn counts_samples(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for ClockSkew {

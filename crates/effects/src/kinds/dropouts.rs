@@ -238,6 +238,10 @@ impl SignalMap for Losses {
     fn is_lossy(&self) -> bool {
         true
     }
+
+    fn lives_in_single_samples(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for Dropouts {

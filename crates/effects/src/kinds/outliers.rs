@@ -172,6 +172,10 @@ impl SignalMap for Spikes {
     fn is_lossy(&self) -> bool {
         true
     }
+
+    fn lives_in_single_samples(&self) -> bool {
+        true
+    }
 }
 
 impl Effect for Outliers {

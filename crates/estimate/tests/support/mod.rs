@@ -75,6 +75,7 @@ pub fn truth(
         len: input.len(),
         inputs: vec![input],
         measured: vec![],
+        mended: simgap_simulate::Mended::default(),
     };
     let simulator = Simulator::new(model, effects, SUBSTEPS).unwrap();
     let predicted = simulator.predict(&run, initial).unwrap();

@@ -122,6 +122,7 @@ mod tests {
             time_step_s: 0.1,
             len: input.len(),
             first_index: 0,
+            mended: simgap_simulate::Mended::default(),
             inputs: vec![input],
             measured: vec![None],
         }

@@ -247,6 +247,7 @@ mod tests {
             time_step_s: STEP_S,
             len: input.len(),
             first_index: 0,
+            mended: simgap_simulate::Mended::default(),
             measured: vec![Some(vec![0.0; input.len()])],
             inputs: vec![input],
         }

@@ -98,6 +98,7 @@ mod tests {
             time_step_s,
             len,
             first_index: 0,
+            mended: simgap_simulate::Mended::default(),
             inputs: vec![(0..len).map(drive).collect()],
             measured: vec![None],
         };

@@ -13,7 +13,7 @@ use crate::search::Search;
 /// Single effects that are tried with a second one from afar.
 const FAR: usize = 2;
 /// Sets of two and of three that are fitted by their joint score, and shapes of each candidate that are scored.
-const JOINT: usize = 8;
+const JOINT: usize = 16;
 const SHAPES: usize = 3;
 /// Single effects that are tried with each other.
 const UNITED: usize = 6;

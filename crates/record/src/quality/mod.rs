@@ -112,6 +112,9 @@ pub struct QualityFinding {
 /// | [`Defect::Alternation`] | `(-1)^row` in 16 tapered parts, 8 standard errors | fewer than 256 rows; half a step of a lattice |
 /// | [`Defect::TimeJitter`] | a stamp more than 0.02 of a step off the uniform grid | |
 ///
+/// Filled samples are neither repeats nor spikes ([`Record::filled`]); in a record that was resampled
+/// ([`Record::is_resampled`]) these and alternations are not sought.
+///
 /// ```
 /// use simgap_record::{Channel, Defect, Record, quality};
 ///
@@ -131,19 +134,28 @@ pub fn quality(record: &Record) -> Vec<QualityFinding> {
             defect,
         });
     let of_channels = record.channels().iter().flat_map(|channel| {
-        defects(&channel.values)
-            .into_iter()
-            .map(|defect| QualityFinding {
-                channel: channel.name.clone(),
-                unit: channel.unit.symbol().to_owned(),
-                defect,
-            })
+        let filled = record.filled(&channel.name).unwrap_or_default();
+        let mut defects = defects(&channel.values, filled);
+        // Of samples that stand between those taken, none is single.
+        defects.retain(|defect| !(record.is_resampled() && is_of_single_samples(defect)));
+        defects.into_iter().map(|defect| QualityFinding {
+            channel: channel.name.clone(),
+            unit: channel.unit.symbol().to_owned(),
+            defect,
+        })
     });
     jitter.into_iter().chain(of_channels).collect()
 }
 
-/// The defects of one column of finite values.
-fn defects(values: &[f64]) -> Vec<Defect> {
+fn is_of_single_samples(defect: &Defect) -> bool {
+    matches!(
+        defect,
+        Defect::Repeated { .. } | Defect::Spikes { .. } | Defect::Alternation { .. }
+    )
+}
+
+/// The defects of one column of finite values, of which some may be filled.
+fn defects(values: &[f64], filled: &[bool]) -> Vec<Defect> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let levels = lattice::distinct(&sorted);
@@ -166,8 +178,8 @@ fn defects(values: &[f64]) -> Vec<Defect> {
         step: l.step,
         levels: l.levels,
     }));
-    found.extend(repeats::repeated(values, &levels, lattice, &held));
-    found.extend(spikes::spikes(values, lattice));
+    found.extend(repeats::repeated((values, filled), &levels, lattice, &held));
+    found.extend(spikes::spikes((values, filled), lattice));
     found.extend(alternation::alternation(values, lattice));
     found
 }

@@ -16,9 +16,10 @@ const MEDIAN_CHANGE_STEPS: f64 = 4.0;
 /// Standard deviations of the expected number of repeats that it must be exceeded by.
 const EXCESS_DEVIATIONS: f64 = 5.0;
 
-/// The defect, if any. `held` are the levels of clipped edges, whose repeats are explained.
+/// The defect, if any, of values of which some may be filled: a run that holds one of these is
+/// explained. `held` are the levels of clipped edges, whose repeats are explained too.
 pub(super) fn repeated(
-    values: &[f64],
+    (values, filled): (&[f64], &[bool]),
     levels: &[(f64, usize)],
     lattice: Option<Lattice>,
     held: &[f64],
@@ -34,7 +35,8 @@ pub(super) fn repeated(
     let mut start = 0;
     for run in values.chunk_by(|a, b| a == b) {
         let end = start + run.len();
-        if run.len() > 1 && !held.contains(&run[0]) {
+        let is_filled = filled.get(start..end).unwrap_or_default().contains(&true);
+        if run.len() > 1 && !held.contains(&run[0]) && !is_filled {
             runs += 1;
             repeats += run.len() - 1;
             longest_run = longest_run.max(run.len() - 1);

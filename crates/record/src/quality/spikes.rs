@@ -17,7 +17,7 @@ const OUTER_SHARE: std::ops::RangeInclusive<f64> = 0.25..=0.75;
 /// On a lattice second differences of a slow curve are 0 or one step: spread in steps.
 const LATTICE_DEVIATION: f64 = 0.5;
 
-/// The defect, if there is any spike.
+/// The defect, if there is any spike but those of filled samples and beside them.
 ///
 /// ```text
 /// cᵢ = yᵢ₋₁ - 2 yᵢ + yᵢ₊₁                                          (1)
@@ -28,7 +28,10 @@ const LATTICE_DEVIATION: f64 = 0.5;
 ///
 /// A smooth curve cannot meet (3): neighbouring second differences have one sign. So a decay from
 /// a large amplitude, or an impact, is none.
-pub(super) fn spikes(values: &[f64], lattice: Option<Lattice>) -> Option<Defect> {
+pub(super) fn spikes(
+    (values, filled): (&[f64], &[bool]),
+    lattice: Option<Lattice>,
+) -> Option<Defect> {
     let bends: Vec<f64> = values
         .windows(3)
         .map(|y| y[0] - 2.0 * y[1] + y[2])
@@ -49,7 +52,8 @@ pub(super) fn spikes(values: &[f64], lattice: Option<Lattice>) -> Option<Defect>
     for i in 1..bends.len() - 1 {
         let middle = bends[i];
         let outer = |k: usize| OUTER_SHARE.contains(&(-bends[k] / middle));
-        if middle.abs() > THRESHOLD * local[i / BLOCK] && outer(i - 1) && outer(i + 1) {
+        let measured = !filled.get(i..i + 3).unwrap_or_default().contains(&true);
+        if measured && middle.abs() > THRESHOLD * local[i / BLOCK] && outer(i - 1) && outer(i + 1) {
             rows.push(i + 1); // (3): the bend of index i is about row i + 1
             let height = -middle / 2.0; // (4)
             if height.abs() > largest.abs() {

@@ -58,6 +58,7 @@ pub fn run(time_step_s: f64, len: usize, inputs: Vec<Vec<f64>>) -> Run {
         len,
         inputs,
         measured: vec![],
+        mended: simgap_simulate::Mended::default(),
     }
 }
 
