@@ -13,7 +13,7 @@
 //! two have to do with each other. These are hints: nothing is changed, and the diagnosis does not
 //! hang on them.
 
-use simgap_estimate::{Problem, Weights, fit_initial_states};
+use simgap_estimate::{Problem, FitOptions, fit_initial_states};
 use simgap_model::{Model, Output, undamped_modes};
 use simgap_record::{AuditFinding, AuditTopic, Record};
 use simgap_signal::correlation::autocorrelation;
@@ -82,7 +82,7 @@ pub fn audit(model: &Model, records: &[&Record]) -> Result<Vec<AuditFinding>, Di
             .for_each(|text| add(AuditTopic::Clock, text));
         let run = run.slice(0..MOST_SAMPLES);
         let problem = Problem::new(model, vec![run])?;
-        let weights = Weights::independent(model.outputs.len());
+        let weights = FitOptions::white(model.outputs.len());
         let fit = fit_initial_states(&problem, &[], &weights)?;
         let run = &problem.runs[0];
         let simulator = problem.simulator(&[], 0)?;
