@@ -39,13 +39,16 @@ pub(crate) fn site_scale(
         .map(|(_, signal)| std(signal))
         .fold(0.0, f64::max);
     let inertia = largest * std(&path.acceleration);
+    let input = match at {
+        Location::Input(name) => {
+            let mut inputs = model.inputs.iter();
+            inputs.position(|input| &input.channel == name)
+        }
+        _ => None,
+    };
     let signal = match at {
         Location::Channel(name) => model.output_index(name).map_or(0.0, |i| std(&outputs[i])),
-        Location::Input(name) => model
-            .inputs
-            .iter()
-            .position(|input| &input.channel == name)
-            .map_or(0.0, |i| std(&run.inputs[i])),
+        Location::Input(_) => input.map_or(0.0, |i| std(&run.inputs[i])),
         Location::Between(_) | Location::Mass(_) => 0.0,
     };
     let positive = |value: f64| if value > 0.0 { value } else { 1.0 };
@@ -68,7 +71,11 @@ pub(crate) fn site_scale(
         time_step_s: bench.time_step_s,
         duration_s: bench.len as f64 * bench.time_step_s,
         displacement_range_m: range(&path.displacement),
-        signal_range: channel.map_or([-1.0, 1.0], |i| range(&outputs[i])),
+        signal_range: match (channel, input) {
+            (Some(i), _) => range(&outputs[i]),
+            (None, Some(i)) => range(&run.inputs[i]),
+            (None, None) => [-1.0, 1.0],
+        },
         signal_step: 0.1 * positive(signal),
         stiffness_n_per_m: if stiffness > 0.0 {
             stiffness

@@ -86,10 +86,7 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         command_line: command_line(args),
         seed: args.seed,
     };
-    let json = write(&outcome, &model, &context, &args.out)?;
-    if args.sets {
-        write_text_atomic(&args.out.join("sets.json"), &crate::json(&outcome.sets)?)?;
-    }
+    let json = write(&outcome, &model, &context, (&args.out, args.sets))?;
     match args.format {
         Format::Json => crate::say_plain(&json)?,
         Format::Human => {
@@ -221,7 +218,7 @@ pub(crate) fn write(
     outcome: &Outcome,
     model: &Model,
     context: &simgap_report::page::ReportContext,
-    out: &Path,
+    (out, with_sets): (&Path, bool),
 ) -> Result<String, CliError> {
     let json = crate::json(&outcome.diagnosis)?;
     let corrected = outcome
@@ -255,6 +252,9 @@ pub(crate) fn write(
     }
     results.add(Path::new("report.html"), &report.html)?;
     results.add(Path::new("diagnosis.json"), &json)?;
+    if with_sets {
+        results.add(Path::new("sets.json"), &crate::json(&outcome.sets)?)?;
+    }
     results.finish(folder)?;
     Ok(json)
 }

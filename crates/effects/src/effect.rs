@@ -47,6 +47,10 @@ pub enum SiteKind {
     NoDamper,
     /// One mass.
     Mass,
+    /// A mass on which gravity acts as on an arm.
+    Pendulum,
+    /// A mass with a known constant force.
+    Load,
     /// An input channel.
     Input,
     /// An output channel.
@@ -202,7 +206,21 @@ pub struct SiteScale {
     pub motion_hz: [f64; LINES],
 }
 
+/// [`SiteScale::signal_range`] of a place where no channel is measured.
+const UNKNOWN_RANGE: [f64; 2] = [-1.0, 1.0];
+
 impl SiteScale {
+    /// Range of the values of an input, in model units: as measured where that is known, else three
+    /// times the rms to either side.
+    #[must_use]
+    pub(crate) fn input_range(&self) -> [f64; 2] {
+        if self.signal_range == UNKNOWN_RANGE {
+            [-3.0 * self.signal, 3.0 * self.signal]
+        } else {
+            self.signal_range
+        }
+    }
+
     /// A scale of the sizes every site has; the rest is unknown.
     #[must_use]
     pub fn plain(displacement_m: f64, velocity_m_per_s: f64, force_n: f64) -> SiteScale {

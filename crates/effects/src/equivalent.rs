@@ -19,8 +19,9 @@ pub struct Equivalent {
 ///
 /// | Effect | is also | where | because |
 /// |---|---|---|---|
-/// | `constant_force` | `sensor_bias`, `constant_force` on another mass | every mass held by springs, one displacement output | a constant force shifts the rest position |
-/// | `constant_force` | `sensor_bias` | one mass with damper, without spring, one velocity output | a constant force shifts the final speed |
+/// | `constant_force` | `sensor_bias`, `constant_force` on another mass | no pendulum, every mass held by springs, one displacement output; a `load_error` too | a constant force shifts the rest position |
+/// | `constant_force` | `sensor_bias` | one mass with damper, without spring, one velocity output; a `load_error` too | a constant force shifts the final speed |
+/// | `load_error` | `constant_force` on the same mass | every mass with a load | a load that is off by a factor is a further constant force |
 /// | `input_gain` | `sensor_gain` | linear, one input, one output | the response is proportional to the input |
 /// | `input_gain` | `mass_error` | one mass that nothing holds | only force over mass counts |
 /// | `input_gain` | `damping_error`, `stiffness_error` | one member alone on a stand | only their product counts |
@@ -58,6 +59,7 @@ pub struct Equivalent {
 #[must_use]
 pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> {
     let mut classes = vec![];
+    classes.extend(loaded(model));
     classes.extend(rest_position(model));
     classes.extend(final_speed(model));
     classes.extend(proportional(model));
@@ -69,7 +71,9 @@ pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> 
             continue;
         }
         for (other, place) in members {
-            if other == kind && same_place(&place, at) {
+            let is_it = other == kind && same_place(&place, at);
+            let mut known = found.iter();
+            if is_it || known.any(|f| f.kind == other && same_place(&f.at, &place)) {
                 continue;
             }
             found.push(Equivalent {
@@ -207,12 +211,37 @@ pub fn likelier_line(placed: &Placed, model: &Model) -> Option<&'static str> {
 type Class = (Vec<(&'static str, Location)>, &'static str);
 
 fn linear(model: &Model) -> bool {
-    model.pendulums.is_empty() && model.loads.is_empty() && model.effects.is_empty()
+    superposes(model) && model.loads.is_empty()
 }
 
+/// Whether the motion under two forces is the sum of those under each.
+fn superposes(model: &Model) -> bool {
+    model.pendulums.is_empty() && model.effects.is_empty()
+}
+
+/// A constant force on every mass, and what is one.
 fn forces(model: &Model) -> Vec<(&'static str, Location)> {
     let at = |mass: &simgap_model::Mass| ("constant_force", Location::Mass(mass.name.clone()));
-    model.masses.iter().map(at).collect()
+    let mut forces: Vec<_> = model.masses.iter().map(at).collect();
+    forces.extend(load_errors(model));
+    forces
+}
+
+/// Masses whose loads do not cancel.
+fn load_errors(model: &Model) -> Vec<(&'static str, Location)> {
+    let each = model.masses.iter().zip(model.load_vector());
+    each.filter(|(_, load)| *load != 0.0)
+        .map(|(mass, _)| ("load_error", Location::Mass(mass.name.clone())))
+        .collect()
+}
+
+fn loaded(model: &Model) -> Vec<Class> {
+    let because = "a load that is off by a factor is a further constant force";
+    let with_force = |error: (&'static str, Location)| {
+        let force = ("constant_force", error.1.clone());
+        (vec![error, force], because)
+    };
+    load_errors(model).into_iter().map(with_force).collect()
 }
 
 fn rest_position(model: &Model) -> Option<Class> {
@@ -226,7 +255,7 @@ fn rest_position(model: &Model) -> Option<Class> {
     let (Some(only), None) = (displacements.next(), displacements.next()) else {
         return None;
     };
-    if !(held && linear(model) && model.dof_count() > 0) {
+    if !(held && superposes(model) && model.dof_count() > 0) {
         return None;
     }
     let mut members = forces(model);
@@ -241,7 +270,7 @@ fn final_speed(model: &Model) -> Option<Class> {
         return None;
     };
     let free = model.springs.is_empty() && !model.dampers.is_empty();
-    if !(linear(model) && free && model.dof_count() == 1 && only.kind == OutputKind::Velocity) {
+    if !(superposes(model) && free && model.dof_count() == 1 && only.kind == OutputKind::Velocity) {
         return None;
     }
     let mut members = forces(model);

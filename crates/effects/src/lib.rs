@@ -8,7 +8,7 @@
 //! use simgap_effects::{Action, SiteKind, catalogue, find};
 //! use simgap_integrate::exact::MemberMotion;
 //!
-//! assert_eq!(catalogue().len(), 38);
+//! assert_eq!(catalogue().len(), 47);
 //! let spring = find("cubic_stiffness").ok_or("not in the catalogue")?;
 //! assert_eq!(spring.parameters()[0].unit, "N/m^3");
 //! // 2000 N/m³ at 0.1 m: 2 N.
@@ -39,7 +39,7 @@ pub use effect::{
 };
 pub use equivalent::{Equivalent, equivalents, equivalents_beside, likelier_line};
 pub use error::EffectError;
-pub use free::free_laws;
+pub use free::{VELOCITY_NODES, find_law, free_laws};
 pub use line::Line;
 pub use place::{Placed, same_place, sites};
 pub use prior::{EXACT, LocalPrior, Prior, SLIPPED, SLIPS, Slip, slip_of, usual_prior};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use simgap_model::{EffectEntry, GROUND, Location, Model, same_pair};
 
-use crate::{Action, Effect, EffectError, SiteKind, catalogue, find};
+use crate::{Action, Effect, EffectError, SiteKind, catalogue, find_law};
 
 /// An effect at its place with its parameter values.
 #[derive(Clone)]
@@ -61,7 +61,7 @@ impl Placed {
     /// [`EffectError`] for an unknown kind or parameter, a missing parameter, a value outside its
     /// physical range, or a place that does not go with the kind or is not in the model.
     pub fn from_entry(model: &Model, entry: &EffectEntry) -> Result<Placed, EffectError> {
-        let effect = find(&entry.kind).ok_or_else(|| EffectError::UnknownKind {
+        let effect = find_law(&entry.kind, &entry.at).ok_or_else(|| EffectError::UnknownKind {
             found: entry.kind.clone(),
             known: kinds(),
         })?;
@@ -112,19 +112,11 @@ impl Placed {
             }
             values.push(value);
         }
-        let needed = effect.site().place();
-        let fits = matches!(
-            (&entry.at, needed),
-            (Location::Between(_), MEMBER)
-                | (Location::Mass(_), MASS)
-                | (Location::Input(_), INPUT)
-                | (Location::Channel(_), CHANNEL)
-        );
-        if !fits {
+        if !effect.site().accepts(&entry.at) {
             return Err(EffectError::WrongPlace {
                 kind: entry.kind.clone(),
                 found: entry.at.to_string(),
-                needed,
+                needed: effect.site().place(),
             });
         }
         model.check_location(&entry.at, &format!("[[effect]] \"{}\"", entry.kind))?;
@@ -176,10 +168,22 @@ impl SiteKind {
             | SiteKind::Damper
             | SiteKind::NoSpring
             | SiteKind::NoDamper => MEMBER,
-            SiteKind::Mass => MASS,
+            SiteKind::Mass | SiteKind::Pendulum | SiteKind::Load => MASS,
             SiteKind::Input => INPUT,
             SiteKind::Channel => CHANNEL,
         }
+    }
+
+    /// Whether it is placed by the key of this location, whatever the model has there.
+    #[must_use]
+    pub fn accepts(self, at: &Location) -> bool {
+        matches!(
+            (at, self.place()),
+            (Location::Between(_), MEMBER)
+                | (Location::Mass(_), MASS)
+                | (Location::Input(_), INPUT)
+                | (Location::Channel(_), CHANNEL)
+        )
     }
 
     /// The same in words.
@@ -193,6 +197,8 @@ impl SiteKind {
             SiteKind::NoSpring => "two nodes without a spring between them",
             SiteKind::NoDamper => "two nodes without a damper between them",
             SiteKind::Mass => "a mass",
+            SiteKind::Pendulum => "a mass with a pendulum",
+            SiteKind::Load => "a mass with a load",
             SiteKind::Input => "an input",
             SiteKind::Channel => "an output",
         }
@@ -229,11 +235,14 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
         SiteKind::Damper => between(&damped),
         SiteKind::NoSpring => placed(pairs(model), &|pair| !sprung(pair)),
         SiteKind::NoDamper => placed(pairs(model), &|pair| !damped(pair)),
-        SiteKind::Mass => model
-            .masses
-            .iter()
-            .map(|m| Location::Mass(m.name.clone()))
-            .collect(),
+        SiteKind::Mass => masses(model, |_| true),
+        SiteKind::Pendulum => masses(model, |mass| {
+            model.pendulums.iter().any(|arm| arm.at == mass)
+        }),
+        SiteKind::Load => masses(model, |mass| {
+            let mut loads = model.loads.iter();
+            loads.any(|load| load.at == mass && load.value != 0.0)
+        }),
         SiteKind::Input => model
             .inputs
             .iter()
@@ -245,6 +254,15 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
             .map(|o| Location::Channel(o.channel.clone()))
             .collect(),
     }
+}
+
+/// The masses of the names that are kept.
+fn masses(model: &Model, keep: impl Fn(&str) -> bool) -> Vec<Location> {
+    let names = model.masses.iter().map(|mass| &mass.name);
+    names
+        .filter(|name| keep(name))
+        .map(|name| Location::Mass(name.clone()))
+        .collect()
 }
 
 /// The members of the model, and every mass with the ground.

@@ -66,7 +66,7 @@ fn untouched(action: &Action) -> Vec<f64> {
 }
 
 fn matrix_entries(model: &Model) -> Vec<f64> {
-    let matrices = model.matrices().unwrap();
+    let matrices = model.tangent_matrices().unwrap();
     let n = model.dof_count();
     let mut entries = model.load_vector();
     for matrix in [
@@ -172,6 +172,15 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "flexible_support",
         "input_lag",
         "input_delay",
+        "pendulum_error",
+        "load_error",
+        "input_dead_zone",
+        "input_saturation",
+        "input_rate_limit",
+        "held_input",
+        "synchronous_force",
+        "synchronous_tone",
+        "gain_ripple",
     ];
     for kind in promised {
         assert!(simgap_effects::find(kind).is_some(), "{kind} is gone");
@@ -195,9 +204,10 @@ fn verify_parameter_names_carry_their_unit() {
             let place = format!("{}: {name} [{unit}]", effect.kind());
             assert!(snake_case(name), "{place}");
             assert!(seen.insert(name), "{place} is there twice");
-            // A ratio has no unit, and a sensor's bias has that of its channel; a rate of it is per
+            // A ratio has no unit, and what acts on a channel has that of the channel; a rate of it is per
             // second.
             let own = unit.trim_start_matches("unit of the output");
+            let own = own.trim_start_matches("unit of the input");
             if !["1", ""].contains(&own) {
                 let suffix = format!("_{}", suffix_of(own).trim_start_matches('_'));
                 assert!(name.ends_with(&suffix), "{place}: needed is {suffix}");

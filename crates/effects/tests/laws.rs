@@ -168,6 +168,21 @@ fn verify_stiffness_and_damping_error() {
 }
 
 #[test]
+fn verify_pendulum_and_load_error() {
+    let arm = Location::Mass("carriage".into());
+    let found = changed("pendulum_error", &[0.8], &arm);
+    assert_eq!(found.pendulums[0].value, 0.8 * 1.5);
+    assert_eq!(found.loads, model().loads);
+    let weight = Location::Mass("load".into());
+    let found = changed("load_error", &[1.5], &weight);
+    assert_eq!(found.load_vector(), [0.0, 1.5 * -19.6]);
+    assert_eq!(found.pendulums, model().pendulums);
+    // Only what is at the place.
+    assert_eq!(changed("load_error", &[1.5], &arm), model());
+    assert_eq!(changed("pendulum_error", &[0.8], &weight), model());
+}
+
+#[test]
 fn verify_missing_members_are_added_between_their_nodes() {
     let at = Location::Between(["load".into(), "ground".into()]);
     let (plain, with) = (

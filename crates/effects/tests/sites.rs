@@ -27,6 +27,8 @@ fn verify_sites_are_what_the_model_has() {
     assert_eq!(names(SiteKind::NoSpring), all[2..]);
     assert_eq!(names(SiteKind::NoDamper), all[..1]);
     assert_eq!(names(SiteKind::Mass), ["mass carriage", "mass load"]);
+    assert_eq!(names(SiteKind::Pendulum), ["mass carriage"]);
+    assert_eq!(names(SiteKind::Load), ["mass load"]);
     assert_eq!(names(SiteKind::Input), ["input u"]);
     assert_eq!(names(SiteKind::Channel), ["channel y"]);
 }

@@ -5,7 +5,7 @@ mod support;
 
 use proptest::prelude::*;
 use simgap_effects::{Effect, Placed, SiteScale, catalogue, sites};
-use simgap_model::Model;
+use simgap_model::{Load, Model, Pendulum};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
 use support::{base_input, force_input, force_output, model, oscillator, output, sampled};
 
@@ -109,8 +109,22 @@ fn compare(simulators: &[Simulator], runs: &[Run], what: &str) {
 
 #[test]
 fn verify_every_kind_of_the_catalogue_in_a_batch() {
-    let (model, runs) = (plant(), runs());
+    let (plain, runs) = (plant(), runs());
+    let mut loaded = plain.clone();
+    let (at, uncertainty) = ("top".to_string(), None);
+    loaded.loads.push(Load {
+        at: at.clone(),
+        value: -4.9,
+        uncertainty,
+    });
+    loaded.pendulums.push(Pendulum {
+        at,
+        value: 1.7,
+        uncertainty,
+    });
     for &effect in catalogue() {
+        let has_site = !sites(&plain, effect.site()).is_empty();
+        let model = if has_site { &plain } else { &loaded }.clone();
         let simulators: Vec<Simulator> = [1.0, 0.97, 1.1, 0.5]
             .iter()
             .flat_map(|&factor| instances(effect, &model, factor))

@@ -12,6 +12,10 @@ const MASS: f64 = 10.0;
 const STIFFNESS: f64 = 4000.0;
 /// Damper, N s/m: a tenth of the critical damping.
 const DAMPING: f64 = 40.0;
+/// Known constant force, N.
+const LOAD: f64 = -20.0;
+/// Gravity on the table as on an arm, N/m at rest.
+const PENDULUM: f64 = 4000.0;
 /// Amplitude of the motion across a member, m.
 pub(super) const AMPLITUDE_M: f64 = 0.01;
 /// Sample rate of smooth signals, and of what is stored sample by sample, Hz.
@@ -43,7 +47,11 @@ impl Stage {
         let ends = "between = [\"table\", \"ground\"]";
         let spring = format!("[[spring]]\nname = \"leaf\"\n{ends}\nstiffness = {STIFFNESS}\n\n");
         let damper = format!("[[damper]]\nname = \"guide\"\n{ends}\ndamping = {DAMPING}\n\n");
-        for members in [spring.clone() + &damper, damper, spring] {
+        let both = spring.clone() + &damper;
+        let at = "at = \"table\"";
+        let loaded = format!("{both}[[load]]\n{at}\nvalue = {LOAD}\n\n");
+        let arm = format!("{both}[[pendulum]]\n{at}\nvalue = {PENDULUM}\n\n");
+        for members in [both, damper, spring, loaded, arm] {
             let model = machine(&members)?;
             if let Some(at) = sites(&model, effect.site()).into_iter().next() {
                 return Ok(Some(Stage { effect, model, at }));

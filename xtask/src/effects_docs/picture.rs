@@ -86,6 +86,7 @@ pub fn picture(effect: &'static dyn Effect) -> Result<Picture, PictureError> {
         .filter(|(parameter, _)| !parameter.per_record)
         .map(|(parameter, value)| {
             let unit = parameter.unit.replace("unit of the output", "m");
+            let unit = unit.replace("unit of the input", "N");
             let unit = if unit == "1" { "" } else { unit.as_str() };
             format!("`{}` = {value} {unit}", parameter.name)
                 .trim_end()

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | a force law | force of the members along a prescribed motion | displacement, velocity, or time where it has a clock |
 //! | a change of the model, a mode | receptance of the table | frequency |
+//! | a change of a load | force along the travel | displacement |
 //! | a map of an input | what is commanded, what reaches the table | time |
 //! | a map of an output | true displacement, what is stored | time |
 
@@ -70,6 +71,9 @@ pub(super) fn signature(stage: &Stage, values: &[f64]) -> Result<Signature, Simu
         Action::Model(change) | Action::Mode { change, .. } => {
             let mut changed = stage.model.clone();
             change(&mut changed, &stage.at);
+            if changed.loads != stage.model.loads {
+                return Ok(of_load(stage, &changed));
+            }
             Ok(of_response(&stage.model, &changed)?)
         }
         Action::Input(map) => Ok(of_signal(map.as_ref(), &pulses(), 1.0, INPUT)),
@@ -239,9 +243,29 @@ fn relative(without: &[(f64, f64)], with: &[(f64, f64)], usual: f64) -> f64 {
     moved / if there > 0.0 { there } else { usual }
 }
 
+/// Force on the table along its travel: that of the members less the load.
+fn of_load(stage: &Stage, changed: &Model) -> Signature {
+    let at = |model: &Model, displacement: f64| {
+        let load: f64 = model.load_vector().iter().sum();
+        let force = stage.members_force(displacement, 0.0) - load;
+        (1e3 * displacement, force)
+    };
+    let line = |model: &Model| [-AMPLITUDE_M, AMPLITUDE_M].map(|d| at(model, d)).to_vec();
+    let (without, with) = (line(&stage.model), line(changed));
+    Signature {
+        over: Over::Displacement,
+        range: Some([-1e3 * AMPLITUDE_M, 1e3 * AMPLITUDE_M]),
+        change: relative(&without, &with, AMPLITUDE_M * 1e3),
+        without,
+        with,
+        samples: false,
+        quantity: ("force", "N"),
+    }
+}
+
 fn of_response(before: &Model, after: &Model) -> Result<Signature, ModelError> {
     let receptance = |model: &Model| -> Result<Curve, ModelError> {
-        let structure = model.matrices()?;
+        let structure = model.tangent_matrices()?;
         let ratio = (FREQS_HZ[1] / FREQS_HZ[0]).ln();
         (0..FREQ_COUNT)
             .map(|n| {

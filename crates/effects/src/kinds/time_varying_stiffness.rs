@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
+use super::carrier::{carriers_hz, swings};
 use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// A spring whose stiffness swings in time: a gear mesh, a rotating shaft that is not round.
@@ -23,8 +24,6 @@ struct Law {
     phase: f64,
 }
 
-/// Part of a period in what is searched of a record below which a stiffness does not swing: it is off, or drifts.
-const LEAST_SWING: f64 = 0.01;
 /// Half periods in a record that a sweep goes up to.
 const SWEPT: usize = 256;
 
@@ -80,20 +79,8 @@ impl Effect for TimeVaryingStiffness {
 
     /// A motion at one frequency and a stiffness at another leave lines at their sum and difference.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let nyquist = 0.5 / scale.time_step_s;
-        let resolution = 1.0 / scale.duration_s;
-        let mut found: Vec<f64> = vec![];
-        for line in scale.lines_hz.into_iter().filter(|line| *line > 0.0) {
-            let motions = scale.motion_hz.into_iter().take(2).filter(|m| *m > 0.0);
-            let sums = motions.flat_map(|motion| [line + motion, (line - motion).abs()]);
-            for freq in std::iter::once(line).chain(sums) {
-                let known = found.iter().any(|f| (f - freq).abs() < 0.5 * resolution);
-                if !known && freq > resolution && freq < nyquist {
-                    found.push(freq);
-                }
-            }
-        }
-        found.into_iter().map(|freq| start(freq, scale)).collect()
+        let carriers = carriers_hz(scale).into_iter();
+        carriers.map(|freq| start(freq, scale)).collect()
     }
 
     /// Beside a motion of many frequencies it leaves no line of its own. Half a period more in the record for each, up
@@ -131,7 +118,7 @@ impl Effect for TimeVaryingStiffness {
     }
 
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
-        values[1] * scale.duration_s >= LEAST_SWING
+        swings(values[1], scale)
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {

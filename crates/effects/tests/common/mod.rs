@@ -39,6 +39,14 @@ name = "rail"
 between = ["load", "ground"]
 damping = 7.0
 
+[[load]]
+at = "load"
+value = -19.6
+
+[[pendulum]]
+at = "carriage"
+value = 1.5
+
 [[input]]
 channel = "u"
 kind = "force"
