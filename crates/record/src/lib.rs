@@ -27,22 +27,38 @@
 //! ```
 
 mod arrays;
+#[cfg(any(feature = "arrow", feature = "parquet"))]
+mod arrow;
+mod base;
 mod bytes;
+#[cfg(any(feature = "arrow", feature = "parquet"))]
+mod calendar;
 mod channel;
+mod clock;
 #[cfg(feature = "parquet")]
 mod columnar;
 mod csv_header;
 mod csv_read;
 mod error;
 mod faults;
-#[cfg(any(feature = "matlab73", feature = "parquet"))]
+#[cfg(any(
+    feature = "arrow",
+    feature = "matlab73",
+    feature = "mdf",
+    feature = "parquet",
+    feature = "xlsx"
+))]
 mod foreign;
 mod format;
 #[cfg(feature = "matlab73")]
 mod hdf5;
+#[cfg(feature = "matlab73")]
+mod hdf5_types;
 mod logger;
 mod map;
 mod mat5;
+#[cfg(feature = "mdf")]
+mod mdf;
 mod mend;
 mod note;
 mod open;
@@ -53,10 +69,15 @@ mod resample;
 mod select;
 mod tdms;
 mod time_base;
+mod time_names;
 mod uff;
 mod uff_lines;
 mod unit;
 mod write;
+#[cfg(feature = "xlsx")]
+mod xlsx;
+#[cfg(feature = "xlsx")]
+mod zip_size;
 
 pub use channel::{Channel, Conversion};
 pub use csv_read::{

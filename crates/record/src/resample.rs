@@ -45,11 +45,23 @@ pub(crate) fn usual_step(time_s: &[f64]) -> f64 {
 /// Values at `start + k step`, k = 0 .. rows-1, of the curve (1) through samples at rising stamps.
 pub(crate) fn on_grid(time_s: &[f64], values: &[f64], step_s: f64, rows: usize) -> Vec<f64> {
     let start = time_s.first().copied().unwrap_or(0.0);
+    curve(
+        time_s,
+        values,
+        (0..rows).map(|row| start + row as f64 * step_s),
+    )
+}
+
+/// Values of the curve (1) at other rising stamps.
+pub(crate) fn at_stamps(time_s: &[f64], values: &[f64], stamps: &[f64]) -> Vec<f64> {
+    curve(time_s, values, stamps.iter().copied())
+}
+
+fn curve(time_s: &[f64], values: &[f64], stamps: impl Iterator<Item = f64>) -> Vec<f64> {
     let last = time_s.len().saturating_sub(2);
     let mut k = 0;
-    (0..rows)
-        .map(|row| {
-            let t = start + row as f64 * step_s;
+    stamps
+        .map(|t| {
             while k < last && time_s[k + 1] <= t {
                 k += 1;
             }

@@ -7,10 +7,13 @@
 
 use std::collections::HashMap;
 
+use crate::base::{Base, Uniform};
 use crate::bytes::{Bytes, Stored};
+use crate::error::shortened;
 use crate::faults::FormatFault;
 use crate::note::Note;
-use crate::raw::{Raw, RawColumn, Uniform, within_limit};
+use crate::raw::{Raw, RawColumn, within_limit};
+use crate::{Unit, UnitKind};
 
 /// Channels that are read from one file.
 const MOST_CHANNELS: usize = 10_000;
@@ -83,12 +86,20 @@ struct Share {
 struct Channel {
     path: String,
     unit: String,
-    step_s: Option<f64>,
-    offset_s: f64,
+    /// Step of a waveform, in its unit.
+    step: Option<f64>,
+    /// Start of a waveform after its stamp, in its unit.
+    offset: f64,
+    /// Unit of the step; seconds where it is empty.
+    x_unit: String,
+    /// What the step counts, where it is told.
+    x_name: String,
+    /// Parts of a second and seconds since 1904.
+    stamp: Option<(u64, i64)>,
     scaled: bool,
     unread: bool,
     values: Vec<f64>,
-    /// Seconds of the first stamp.
+    /// Seconds of the first value that is a stamp.
     epoch: Option<i64>,
     last: Option<Share>,
 }
@@ -125,17 +136,18 @@ impl File {
                 needed: "a segment, which begins with TDSm (TDSh begins an index file; read the .tdms beside it)",
             });
         }
+        // The contents are little-endian whatever they say of the rest.
         let contents = rest.u32(WHAT)?;
-        rest.take(4, WHAT)?;
-        let (length, described) = (rest.u64(WHAT)?, rest.u64(WHAT)?);
+        let big_endian = contents & BIG_ENDIAN != 0;
+        let mut head = rest.part(20, WHAT)?.ordered(big_endian);
+        head.take(4, WHAT)?;
+        let (length, described) = (head.u64(WHAT)?, head.u64(WHAT)?);
         let length = if length == UNFINISHED {
             rest.left() as u64
         } else {
             length
         };
-        let mut body = rest
-            .part(length, "a segment")?
-            .ordered(contents & BIG_ENDIAN != 0);
+        let mut body = rest.part(length, "a segment")?.ordered(big_endian);
         let mut description = body.part(described, "the description of a segment")?;
         if contents & NEW_LIST != 0 {
             self.round.clear();
@@ -245,8 +257,11 @@ impl File {
             let channel = &mut self.channels[channel];
             if code == TEXT {
                 let value = text(bytes)?;
-                if name == "unit_string" {
-                    channel.unit = value;
+                match name.as_str() {
+                    "unit_string" => channel.unit = value,
+                    "wf_xunit_string" => channel.x_unit = value,
+                    "wf_xname" => channel.x_name = value,
+                    _ => {}
                 }
                 continue;
             }
@@ -256,11 +271,14 @@ impl File {
                 needed: "a type of the format",
             })?;
             let raw = bytes.take(kind.size(), WHAT)?;
+            if kind == Kind::Stamp && name == "wf_start_time" {
+                channel.stamp = Some(stamp_of(raw, bytes.big_endian()));
+            }
             let Kind::Number(stored) = kind else { continue };
             let value = stored.number(raw, bytes.big_endian());
             match name.as_str() {
-                "wf_increment" if value > 0.0 => channel.step_s = Some(value),
-                "wf_start_offset" => channel.offset_s = value,
+                "wf_increment" if value > 0.0 => channel.step = Some(value),
+                "wf_start_offset" if value.is_finite() => channel.offset = value,
                 "NI_Number_Of_Scales" => channel.scaled = value > 0.0,
                 _ => {}
             }
@@ -326,6 +344,8 @@ impl File {
         for channel in &self.channels {
             *names.entry(last_name(&channel.path)).or_default() += 1;
         }
+        // Starts count from the first stamp, which has more digits than a double.
+        let first = self.channels.iter().find_map(|channel| channel.stamp);
         for channel in self.channels {
             let short = last_name(&channel.path);
             let name = match names.get(&short) {
@@ -336,37 +356,24 @@ impl File {
                     .trim_start_matches('/')
                     .to_owned(),
             };
-            let mut left_out = |because: &str| {
-                notes.push(Note::LeftOut {
-                    column: name.clone(),
-                    because: because.to_owned(),
-                });
-            };
-            if channel.scaled {
-                left_out("its values are to be scaled by the program that wrote them");
-            } else if channel.unread {
-                left_out("its values are no real numbers");
-            } else if channel.values.is_empty() {
+            if channel.values.is_empty() && !channel.unread {
                 continue;
-            } else {
-                if let (Some(step_s), None) = (channel.step_s, raw.uniform) {
-                    raw.uniform = Some(Uniform {
-                        start_s: channel.offset_s,
-                        step_s,
-                        rows: channel.values.len(),
+            }
+            match channel.base(first) {
+                Err(because) => notes.push(Note::LeftOut {
+                    column: name,
+                    because,
+                }),
+                Ok(base) => {
+                    let base = base.map(|base| raw.base(base));
+                    raw.columns.push(RawColumn {
+                        name,
+                        unit: channel.unit,
+                        values: channel.values,
+                        base,
+                        ..RawColumn::default()
                     });
                 }
-                if let (Some(step_s), Some(uniform)) = (channel.step_s, raw.uniform)
-                    && step_s != uniform.step_s
-                {
-                    left_out("its step is not that of the first channel");
-                    continue;
-                }
-                raw.columns.push(RawColumn {
-                    name,
-                    unit: channel.unit,
-                    values: channel.values,
-                });
             }
         }
         raw
@@ -374,6 +381,44 @@ impl File {
 }
 
 impl Channel {
+    /// The time base of a waveform; `None` for values without one, and why a channel is left out.
+    fn base(&self, first: Option<(u64, i64)>) -> Result<Option<Base>, String> {
+        if self.scaled {
+            return Err("its values are to be scaled by the program that wrote them".to_owned());
+        }
+        if self.unread {
+            return Err("its values are no real numbers".to_owned());
+        }
+        let Some(step) = self.step else {
+            return Ok(None);
+        };
+        let in_s = if self.x_unit.trim().is_empty() {
+            1.0
+        } else {
+            let unit = Unit::parse(&self.x_unit);
+            if unit.kind() != UnitKind::Time {
+                let unit = shortened(&self.x_unit);
+                return Err(format!(
+                    "its values stand over an axis in [{unit}], not over time"
+                ));
+            }
+            unit.si_factor()
+        };
+        if self.x_name.to_lowercase().contains("freq") {
+            return Err("its values stand over frequency, not over time".to_owned());
+        }
+        let late = |((parts, seconds), (first_parts, first_seconds)): ((u64, i64), (u64, i64))| {
+            let whole = seconds.wrapping_sub(first_seconds) as f64;
+            whole + (parts as f64 - first_parts as f64) / PARTS
+        };
+        let late_s = self.stamp.zip(first).map_or(0.0, late);
+        Ok(Some(Base::Even(Uniform {
+            start_s: late_s + self.offset * in_s,
+            step_s: step * in_s,
+            rows: self.values.len(),
+        })))
+    }
+
     fn push(&mut self, kind: Kind, bytes: &[u8], big_endian: bool) {
         match kind {
             Kind::Number(stored) => self.values.extend(stored.numbers(bytes, big_endian)),

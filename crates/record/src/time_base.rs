@@ -148,9 +148,11 @@ fn band(time_s: &[f64], step: f64) -> f64 {
     let width = |h: f64| {
         let rest = |(k, t): (usize, &f64)| t - start - k as f64 * h;
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
-        let (low, high) = time_s.iter().enumerate().map(rest).fold(ends, |(low, high), r| {
-            (r.min(low), r.max(high))
-        });
+        let (low, high) = time_s
+            .iter()
+            .enumerate()
+            .map(rest)
+            .fold(ends, |(low, high), r| (r.min(low), r.max(high)));
         high - low
     };
     // A slope further off than this makes a band of more than two steps by itself.
@@ -179,10 +181,17 @@ mod tests {
     #[test]
     fn verify_rounding_is_told_from_a_real_alternation() {
         // 40 Hz in hundredths: 0.02 and 0.03 s by turns, 0.1 of a step off.
-        assert_eq!(check_even(&printed(40.0, 0.01, 400)).map(|h| (h * 1e5).round()), Ok(2500.0));
+        assert_eq!(
+            check_even(&printed(40.0, 0.01, 400)).map(|h| (h * 1e5).round()),
+            Ok(2500.0)
+        );
         let real = |k: usize| 0.025 * k as f64 + if k % 2 == 1 { 0.004_9 } else { 0.0 };
         let real: Vec<f64> = (0..400).map(real).collect();
-        assert!(matches!(check_even(&real), Err(TimeFault::Uneven { .. })), "{:?}", check_even(&real));
+        assert!(
+            matches!(check_even(&real), Err(TimeFault::Uneven { .. })),
+            "{:?}",
+            check_even(&real)
+        );
     }
 
     #[test]
@@ -191,11 +200,20 @@ mod tests {
             let slip = |k: usize| 0.02 * k as f64 + if k >= at { 0.01 } else { 0.0 };
             let coarse: Vec<f64> = (0..200).map(slip).collect();
             assert!(check_even(&coarse).is_ok(), "{at}");
-            let fine: Vec<f64> = coarse.iter().enumerate().map(|(k, t)| t + 1e-4 * (k % 2) as f64).collect();
-            assert!(matches!(check_even(&fine), Err(TimeFault::Uneven { row, .. }) if row == at), "{at}");
+            let fine: Vec<f64> = coarse
+                .iter()
+                .enumerate()
+                .map(|(k, t)| t + 1e-4 * (k % 2) as f64)
+                .collect();
+            assert!(
+                matches!(check_even(&fine), Err(TimeFault::Uneven { row, .. }) if row == at),
+                "{at}"
+            );
         }
         // Two slips close together are no steady clock.
-        let twice = |k: usize| 0.02 * k as f64 + if k >= 100 { 0.01 } else { 0.0 } + if k >= 110 { 0.01 } else { 0.0 };
+        let twice = |k: usize| {
+            0.02 * k as f64 + if k >= 100 { 0.01 } else { 0.0 } + if k >= 110 { 0.01 } else { 0.0 }
+        };
         let twice: Vec<f64> = (0..200).map(twice).collect();
         assert!(check_even(&twice).is_err());
     }
@@ -203,8 +221,12 @@ mod tests {
     #[test]
     fn verify_a_lost_sample_is_no_rounding() {
         for rows in [20, 200, 2000] {
-            let lost: Vec<f64> = printed(100.0, 0.01, rows + 1).into_iter().enumerate()
-                .filter(|(k, _)| *k != rows / 2).map(|(_, t)| t).collect();
+            let lost: Vec<f64> = printed(100.0, 0.01, rows + 1)
+                .into_iter()
+                .enumerate()
+                .filter(|(k, _)| *k != rows / 2)
+                .map(|(_, t)| t)
+                .collect();
             assert!(check_even(&lost).is_err(), "{rows}");
         }
     }

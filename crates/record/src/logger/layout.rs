@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::cells::{Cell, Dialect, classify, split};
+use super::cells::{Cell, Dialect, SPACES, classify, split};
 use crate::error::{RecordError, shortened};
 use crate::faults::TextFault;
 use crate::select::Heading;
@@ -14,7 +14,7 @@ const LOOKED_AT: usize = 2000;
 const LIKE_ROWS: usize = 3;
 
 /// Dialects in the order in which they win a tie.
-const DIALECTS: [Dialect; 6] = [
+const DIALECTS: [Dialect; 8] = [
     Dialect {
         separator: ';',
         decimal_comma: false,
@@ -40,6 +40,14 @@ const DIALECTS: [Dialect; 6] = [
         separator: ',',
         decimal_comma: true,
     },
+    Dialect {
+        separator: SPACES,
+        decimal_comma: false,
+    },
+    Dialect {
+        separator: SPACES,
+        decimal_comma: true,
+    },
 ];
 
 /// How a table is taken apart. Lines count from 0 here.
@@ -48,21 +56,38 @@ pub(crate) struct Layout {
     pub(crate) dialect: Dialect,
     /// No number that was looked at has a decimal sign.
     pub(crate) undecided: bool,
-    pub(crate) header: usize,
+    /// `None` where the names were given.
+    pub(crate) header: Option<usize>,
     pub(crate) units: Option<usize>,
     /// Line of the first row.
     pub(crate) first_row: usize,
     pub(crate) headings: Vec<Heading>,
 }
 
+/// What is known of a layout before it is guessed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Known<'a> {
+    /// Separator and decimal sign, of a sheet of a workbook.
+    pub(crate) dialect: Option<Dialect>,
+    /// Names and units in place of a header.
+    pub(crate) columns: &'a [Heading],
+}
+
 /// Guesses the layout from the first lines of a file.
 pub(crate) fn guess<'a>(
     file: &str,
     lines: impl Iterator<Item = &'a str>,
+    known: Known<'_>,
 ) -> Result<Layout, RecordError> {
     let lines: Vec<&str> = lines.take(LOOKED_AT).collect();
+    if let Some(layout) = campbell(&lines) {
+        return Ok(layout);
+    }
     let mut best: Option<(f64, Block)> = None;
-    for dialect in DIALECTS {
+    let dialects = DIALECTS
+        .into_iter()
+        .filter(|dialect| known.dialect.is_none_or(|k| k == *dialect));
+    for dialect in dialects {
         if let Some(block) = block(&lines, dialect)
             && best.as_ref().is_none_or(|(score, _)| block.score > *score)
         {
@@ -72,20 +97,84 @@ pub(crate) fn guess<'a>(
     let Some((_, block)) = best else {
         return Err(no_table(file, &lines));
     };
-    let undecided = DIALECTS.iter().any(|&other| {
-        let Dialect {
-            separator,
-            decimal_comma,
-        } = block.dialect;
-        other
-            == Dialect {
+    let undecided = known.dialect.is_none()
+        && DIALECTS.iter().any(|&other| {
+            let Dialect {
                 separator,
-                decimal_comma: !decimal_comma,
-            }
-            && separator != ','
-            && self::block(&lines, other).is_some_and(|tie| tie.score == block.score)
-    });
+                decimal_comma,
+            } = block.dialect;
+            other
+                == Dialect {
+                    separator,
+                    decimal_comma: !decimal_comma,
+                }
+                && separator != ','
+                && self::block(&lines, other).is_some_and(|tie| tie.score == block.score)
+        });
+    if !known.columns.is_empty() {
+        return given(file, &block, undecided, known.columns);
+    }
     headed(file, &lines, &block, undecided)
+}
+
+/// The layout under names that were given.
+fn given(
+    file: &str,
+    block: &Block,
+    undecided: bool,
+    columns: &[Heading],
+) -> Result<Layout, RecordError> {
+    if columns.len() != block.width {
+        return Err(RecordError::Text {
+            file: file.to_owned(),
+            fault: TextFault::ColumnCount {
+                line: block.start as u64 + 1,
+                found: columns.len(),
+                needed: block.width,
+            },
+        });
+    }
+    Ok(Layout {
+        dialect: block.dialect,
+        undecided,
+        header: None,
+        units: None,
+        first_row: block.start,
+        headings: columns.to_vec(),
+    })
+}
+
+/// The four lines of a Campbell logger (TOA5): the logger, names, units, and how each was made.
+fn campbell(lines: &[&str]) -> Option<Layout> {
+    let dialect = Dialect {
+        separator: ',',
+        decimal_comma: false,
+    };
+    let cells = |k: usize| split(lines.get(k)?, ',');
+    if cells(0)?.first()? != "TOA5" {
+        return None;
+    }
+    let (names, units) = (cells(1)?, cells(2)?);
+    let headings = names.iter().enumerate();
+    let headings = headings.map(|(k, name)| {
+        // The stamp is in "TS", a running number in "RN": no units.
+        let unit = units.get(k).map_or("", |unit| {
+            if matches!(unit.as_ref(), "TS" | "RN") {
+                ""
+            } else {
+                unit
+            }
+        });
+        Heading::new(name, unit)
+    });
+    Some(Layout {
+        dialect,
+        undecided: false,
+        header: Some(1),
+        units: Some(2),
+        first_row: 4,
+        headings: headings.collect(),
+    })
 }
 
 fn no_table(file: &str, lines: &[&str]) -> RecordError {
@@ -131,7 +220,8 @@ fn shape(line: &str, dialect: Dialect) -> Option<(usize, usize)> {
     }
     let first = classify(cells.first()?, dialect.decimal_comma);
     let starts = matches!(first, Cell::Number(_) | Cell::Stamp(_));
-    (cells.len() >= 2 && (numbers >= 2 || (starts && numbers == 1 && cells.len() == 2)))
+    let spaced = dialect.separator == SPACES;
+    (cells.len() >= 2 && (numbers >= 2 || (starts && !spaced && numbers == 1 && cells.len() == 2)))
         .then_some((cells.len(), numbers))
 }
 
@@ -212,10 +302,7 @@ fn headed(
         .rev()
         .filter(|&k| !is_rule(lines[k]))
         .take(2)
-        .filter_map(|k| {
-            let cells = split(lines[k], block.dialect.separator)?;
-            Some((k, fitted(cells, block.width)?))
-        })
+        .filter_map(|k| Some((k, names(lines[k], block)?)))
         .collect();
     let (header, units) = match &above[..] {
         [units, header] if are_units(&units.1) && !is_bracketed(&header.1) => (header, Some(units)),
@@ -226,14 +313,12 @@ fn headed(
                 fault: TextFault::NoHeader {
                     line: block.start as u64 + 1,
                     width: block.width,
+                    example: example(block.width),
                 },
             });
         }
     };
     let mut headings: Vec<Heading> = header.1.iter().map(|cell| heading(cell)).collect();
-    if let Some(first) = headings.first_mut() {
-        first.name = first.name.trim_start_matches(['#', '%']).trim().to_owned();
-    }
     if let Some((_, units)) = units {
         for (heading, unit) in headings.iter_mut().zip(units) {
             *heading = Heading::new(&heading.name, without_brackets(unit));
@@ -242,11 +327,71 @@ fn headed(
     Ok(Layout {
         dialect: block.dialect,
         undecided,
-        header: header.0,
+        header: Some(header.0),
         units: units.map(|(line, _)| *line),
         first_row: block.start,
         headings,
     })
+}
+
+/// The names in a line, however they are separated, without the sign of a comment.
+fn names<'a>(line: &'a str, block: &Block) -> Option<Vec<Cow<'a, str>>> {
+    let plain = line.trim_start();
+    let plain = match plain.strip_prefix(['#', '%']) {
+        Some(rest) => rest.trim_start_matches(['#', '%', ' ']),
+        None => line,
+    };
+    let separator = block.dialect.separator;
+    if separator != SPACES {
+        return fitted(split(plain, separator)?, block.width);
+    }
+    // Names hold spaces; so they may stand between two, or between commas.
+    let wide = plain
+        .split("  ")
+        .map(str::trim)
+        .filter(|cell| !cell.is_empty());
+    let wide: Vec<Cow<'a, str>> = wide.map(Cow::Borrowed).collect();
+    let others = ['\t', ',', ';']
+        .into_iter()
+        .filter_map(|other| split(plain, other));
+    let all = std::iter::once(bracketed(plain))
+        .chain([wide])
+        .chain(others);
+    all.into_iter().find(|cells| cells.len() == block.width)
+}
+
+/// Words between spaces, each with the unit in brackets that follows it.
+fn bracketed(line: &str) -> Vec<Cow<'_, str>> {
+    let mut cells: Vec<Cow<'_, str>> = Vec::new();
+    for word in split(line, SPACES).unwrap_or_default() {
+        match cells.last_mut() {
+            Some(last) if word.starts_with(['[', '(']) && !last.ends_with([']', ')']) => {
+                *last = Cow::Owned(format!("{last} {word}"));
+            }
+            _ => cells.push(word),
+        }
+    }
+    cells
+}
+
+/// Names for so many columns, for a message.
+fn example(width: usize) -> String {
+    let names = ["t [s]", "u [N]", "y [mm]"];
+    let name = |k: usize| match (k, width) {
+        (1, 2) => names[2].to_owned(),
+        _ => names
+            .get(k)
+            .map_or_else(|| format!("c{} [V]", k + 1), |&name| name.to_owned()),
+    };
+    const SHOWN: usize = 8;
+    let mut list = (0..width.min(SHOWN))
+        .map(name)
+        .collect::<Vec<_>>()
+        .join(",");
+    if width > SHOWN {
+        list += ",...";
+    }
+    list
 }
 
 /// As many names as there are columns; a separator at the end of every row, or of the header
@@ -286,9 +431,10 @@ fn are_units(cells: &[Cow<'_, str>]) -> bool {
 
 /// Units of no motion or force that loggers write.
 fn is_unit(symbol: &str) -> bool {
-    const OTHERS: [&str; 24] = [
-        "V", "mV", "uV", "µV", "A", "mA", "W", "kW", "%", "°C", "degC", "K", "°F", "Hz", "kHz",
-        "Ohm", "1", "l/min", "kg", "kg/s", "J", "µm/m", "um/m", "mV/V",
+    const OTHERS: [&str; 30] = [
+        "Volt", "Volts", "volt", "Amp", "Ampere", "counts", "V", "mV", "uV", "µV", "A", "mA", "W",
+        "kW", "%", "°C", "degC", "K", "°F", "Hz", "kHz", "Ohm", "1", "l/min", "kg", "kg/s", "J",
+        "µm/m", "um/m", "mV/V",
     ];
     Unit::parse(symbol).kind() != UnitKind::Other || OTHERS.contains(&symbol)
 }
