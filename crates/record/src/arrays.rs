@@ -106,8 +106,8 @@ fn name_by_text(array: &mut Array, texts: &HashMap<String, String>) {
         let mut found = words.iter().filter_map(|word| {
             texts.iter().find_map(|(path, text)| {
                 let own = path.strip_prefix(parent)?.strip_prefix('.')?;
-                let text = text.trim_matches([' ', '"', '\0']);
-                (own.eq_ignore_ascii_case(word) && !text.is_empty()).then(|| text.to_owned())
+                let text = text.replace(['"', '\0'], "");
+                (own.eq_ignore_ascii_case(word) && !text.trim().is_empty()).then_some(text)
             })
         });
         found.next()

@@ -10,6 +10,7 @@ use crate::error::{RecordError, digits, shortened};
 use crate::faults::SelectionFault;
 use crate::map::ChannelMap;
 use crate::note::Note;
+use crate::resample::usual_step;
 use crate::select::Heading;
 use crate::time_names::unit_in_name;
 
@@ -59,16 +60,10 @@ pub(crate) fn clocked(
     Ok((values, unit))
 }
 
-/// The first stamp and the median step, in the unit of the file.
+/// The first stamp and the usual step, in the unit of the file.
 fn first_and_step(stamps: &Stamps) -> (f64, f64) {
-    let mut steps: Vec<f64> = stamps.values.windows(2).map(|p| p[1] - p[0]).collect();
-    let first = stamps.origin + stamps.values.first().copied().unwrap_or(0.0);
-    if steps.is_empty() {
-        return (first, 0.0);
-    }
-    let middle = steps.len() / 2;
-    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-    (first, median)
+    let first = stamps.values.first().copied().unwrap_or(0.0);
+    (stamps.origin + first, usual_step(&stamps.values))
 }
 
 fn unit_of(

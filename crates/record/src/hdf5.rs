@@ -114,7 +114,11 @@ impl Walk {
             [rows] => (1, rows),
             [outer, inner] => (outer, inner),
             _ => {
-                return Ok(self.leave_out(path, "it has more than two dimensions", MIN_ROWS as u64));
+                return Ok(self.leave_out(
+                    path,
+                    "it has more than two dimensions",
+                    MIN_ROWS as u64,
+                ));
             }
         };
         let count = outer.saturating_mul(inner);

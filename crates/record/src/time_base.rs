@@ -69,6 +69,8 @@ const STEADY_FRACTION: f64 = 0.05;
 /// Stamps rounded to a unit fill a band of one unit about their grid; the search for the grid and
 /// the digits of a double widen it by a little.
 const ROUNDED_UNITS: f64 = 1.02;
+/// A slip of half a step is rounding where the unit is half a step.
+const FINE_UNIT: f64 = 0.55;
 /// Decimals that are looked at.
 const MOST_DECIMALS: i32 = 12;
 /// A stamp is a whole number of units when it is this close to one.
@@ -109,30 +111,32 @@ pub(crate) fn check_even(time_s: &[f64]) -> Result<f64, TimeFault> {
 }
 
 /// Whether some even time base, rounded to the unit of these stamps, gives them.
+///
+/// A lost sample looks like the rounding of a slow clock where the unit is a whole step. So units of
+/// more than [`FINE_UNIT`] steps explain nothing beyond [`UNEVEN_FRACTION`] about the best grid.
 fn is_rounding(time_s: &[f64], step: f64, worst: f64) -> bool {
-    // Half a unit is the least that moves a stamp so far, and the most that may.
-    let Some(unit) = unit_of(time_s, worst * step) else {
+    // A stamp is moved by half a unit; the best grid lies up to another half off.
+    let Some(unit) = unit_of(time_s, step).filter(|unit| *unit >= worst * step) else {
         return false;
     };
-    let width = band(time_s, step);
-    width <= ROUNDED_UNITS * unit && width <= 2.0 * UNEVEN_FRACTION * step
+    let near = worst <= UNEVEN_FRACTION || unit <= FINE_UNIT * step;
+    near && band(time_s, step) <= ROUNDED_UNITS * unit
 }
 
-/// The largest power of ten, or place of single precision, that all stamps are whole multiples of,
-/// if it is at least as large as a deviation to be explained.
-fn unit_of(time_s: &[f64], deviation: f64) -> Option<f64> {
+/// The largest power of ten of at most a step, or place of single precision, that all stamps are whole
+/// multiples of.
+fn unit_of(time_s: &[f64], step: f64) -> Option<f64> {
     let end = time_s.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
     let whole = |t: &f64, unit: f64| (t / unit - (t / unit).round()).abs() < WHOLE;
     let decimal = (-3..=MOST_DECIMALS)
         .map(|decimals| 1.0 / 10_f64.powi(decimals))
-        .filter(|&unit| unit > 1e-15 * end / WHOLE)
+        .filter(|&unit| unit <= step && unit > 1e-15 * end / WHOLE)
         .find(|&unit| time_s.iter().all(|t| whole(t, unit)));
     let single = || {
         let stored = time_s.iter().all(|&t| f64::from(t as f32) == t);
         stored.then(|| end * f64::from(f32::EPSILON))
     };
-    let unit = decimal.or_else(single)?;
-    (unit >= deviation).then_some(unit)
+    decimal.or_else(single)
 }
 
 /// Width of the narrowest band of even slope that holds all stamps: the least over h of

@@ -431,10 +431,10 @@ fn are_units(cells: &[Cow<'_, str>]) -> bool {
 
 /// Units of no motion or force that loggers write.
 fn is_unit(symbol: &str) -> bool {
-    const OTHERS: [&str; 30] = [
-        "Volt", "Volts", "volt", "Amp", "Ampere", "counts", "V", "mV", "uV", "µV", "A", "mA", "W",
-        "kW", "%", "°C", "degC", "K", "°F", "Hz", "kHz", "Ohm", "1", "l/min", "kg", "kg/s", "J",
-        "µm/m", "um/m", "mV/V",
+    const OTHERS: [&str; 32] = [
+        "VDC", "VAC", "Volt", "Volts", "volt", "Amp", "Ampere", "counts", "V", "mV", "uV", "µV",
+        "A", "mA", "W", "kW", "%", "°C", "degC", "K", "°F", "Hz", "kHz", "Ohm", "1", "l/min", "kg",
+        "kg/s", "J", "µm/m", "um/m", "mV/V",
     ];
     Unit::parse(symbol).kind() != UnitKind::Other || OTHERS.contains(&symbol)
 }
