@@ -85,7 +85,7 @@ fn unit_of(
             return Err(refused(file, fault));
         }
         // What a map says is the user's word.
-        if given.is_none() && unit.to_si(first) > TO_2100_FROM_1904 {
+        if given.is_none() && is_beyond(&unit, first) {
             let because = format!("is in [{}], but begins at {first:e}", shortened(symbol));
             return Err(open(file, name, because, first, step));
         }
@@ -94,7 +94,7 @@ fn unit_of(
     if let Some(symbol) = unit_in_name(name) {
         let unit = Unit::parse(symbol);
         let parts = matches!(symbol, "ms" | "us" | "ns");
-        if unit.to_si(first) > TO_2100_FROM_1904 {
+        if is_beyond(&unit, first) {
             let because = format!("is named for {symbol}, but begins at {first:e}");
             return Err(open(file, name, because, first, step));
         }
@@ -124,6 +124,17 @@ fn unit_of(
         first,
     });
     Ok(Unit::parse(symbol))
+}
+
+/// Whether a stamp is later than any date of this century, by any count.
+fn is_beyond(unit: &Unit, first: f64) -> bool {
+    let last_day = DAYS.iter().fold(0.0, |last: f64, &(_, to)| last.max(to));
+    let in_days = unit.si_factor() == 86_400.0;
+    if in_days {
+        first > last_day
+    } else {
+        unit.to_si(first) > TO_2100_FROM_1904
+    }
 }
 
 /// The unit that stamps of no unit can only have; `None` where nothing speaks against seconds, and

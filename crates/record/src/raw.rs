@@ -271,23 +271,22 @@ fn reference(raw: &Raw, picks: &[Pick], wanted: bool) -> usize {
             .filter_map(|pick| raw.columns[pick.column].base)
     };
     let count = |base: usize| bases().filter(|&other| other == base).count();
-    let finer = |a: usize, b: usize| {
-        raw.bases[b]
-            .mean_step()
-            .total_cmp(&raw.bases[a].mean_step())
-    };
+    let step = |base: usize| raw.bases[base].mean_step();
     let mut all: Vec<usize> = bases().collect();
     all.sort_unstable();
     all.dedup();
-    // Of equal ones the first, so the order is turned round.
-    let best = all.into_iter().rev().max_by(|&a, &b| {
-        let by_count = if wanted {
-            std::cmp::Ordering::Equal
-        } else {
-            count(a).cmp(&count(b))
-        };
-        by_count.then(finer(a, b))
-    });
+    if !wanted {
+        let most = all.iter().map(|&base| count(base)).max();
+        all.retain(|&base| Some(count(base)) == most);
+    }
+    // Of equal ones the first.
+    let finest = all
+        .iter()
+        .map(|&base| step(base))
+        .fold(f64::INFINITY, f64::min);
+    let best = all
+        .into_iter()
+        .find(|&base| step(base) <= finest * (1.0 + 1e-6));
     best.unwrap_or(0)
 }
 

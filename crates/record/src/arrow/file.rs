@@ -3,7 +3,7 @@
 use std::io::Read as _;
 
 use super::flat::Table;
-use super::schema::{BATCH, Field, Kind, SCHEMA, fields};
+use super::schema::{BATCH, Field, Kind, SCHEMA, fields, of_schema};
 use crate::MAX_FILE_BYTES;
 use crate::bytes::{Bytes, Stored, counted, half};
 use crate::calendar;
@@ -13,6 +13,8 @@ use crate::raw::{Raw, RawColumn, within_limit};
 
 /// The word before the messages of a file.
 const MAGIC: &[u8] = b"ARROW1\0\0";
+/// And behind them.
+const END: &[u8] = b"ARROW1";
 /// Before the length of a message.
 const GOES_ON: u32 = u32::MAX;
 
@@ -24,33 +26,62 @@ pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Raw, FormatFau
             instead: "write it with version 2 (pyarrow.feather.write_feather), or as Parquet",
         });
     }
+    if let Some(footer) = footer(bytes) {
+        return by_footer(bytes, &footer)?.map_or_else(
+            || Err(damaged("its footer has no schema")),
+            |table| Ok(table.raw(notes)),
+        );
+    }
     let mut rest = Bytes::new(bytes, 0, false);
     if bytes.starts_with(MAGIC) {
         rest.take(MAGIC.len() as u64, "the magic word")?;
     }
     let mut table: Option<Columns> = None;
-    while let Some((head, mut body)) = message(&mut rest)? {
-        let Some(root) = Table::root(head) else {
-            return Err(damaged("its bytes contradict each other"));
-        };
-        match (root.byte(1), &mut table) {
-            (SCHEMA, None) => {
-                let fields = fields(head)
-                    .ok_or_else(|| damaged("its schema is in no order of bytes that is known"))?;
+    while let Some((head, body)) = message(&mut rest)? {
+        match Table::root(head).map(|root| root.byte(1)) {
+            Some(SCHEMA) if table.is_none() => {
+                let fields = fields(head).ok_or_else(no_order)?;
                 table = Some(Columns::new(fields));
             }
-            (BATCH, Some(table)) => {
-                let batch = root
-                    .table(2)
-                    .ok_or_else(|| damaged("a batch without rows"))?;
-                let left = body.left() as u64;
-                table.batch(&batch, body.take(left, "a batch")?)?;
+            None => return Err(damaged("its bytes contradict each other")),
+            _ => {
+                if let Some(table) = &mut table {
+                    table.message(head, body)?;
+                }
             }
-            _ => {}
         }
     }
     let table = table.ok_or_else(|| damaged("it has no schema"))?;
     Ok(table.raw(notes))
+}
+
+fn no_order() -> FormatFault {
+    damaged("its schema is in no order of bytes that is known")
+}
+
+/// The directory at the end of a file; a stream has none, nor has a file that was cut off.
+fn footer(bytes: &[u8]) -> Option<Table<'_>> {
+    let rest = bytes.strip_prefix(MAGIC)?.strip_suffix(END)?;
+    let (rest, length) = rest.split_last_chunk::<4>()?;
+    let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
+    Table::root(rest.get(rest.len().checked_sub(length)?..)?)
+}
+
+/// The batches that the directory lists.
+fn by_footer(bytes: &[u8], footer: &Table<'_>) -> Result<Option<Columns>, FormatFault> {
+    let Some(schema) = footer.table(1) else {
+        return Ok(None);
+    };
+    let mut table = Columns::new(of_schema(&schema).ok_or_else(no_order)?);
+    for (offset, ..) in footer.blocks(3) {
+        let at = usize::try_from(offset).ok().filter(|&at| at <= bytes.len());
+        let at = at.ok_or_else(|| damaged("a batch lies beyond it"))?;
+        let mut rest = Bytes::new(&bytes[at..], at as u64, false);
+        if let Some((head, body)) = message(&mut rest)? {
+            table.message(head, body)?;
+        }
+    }
+    Ok(Some(table))
 }
 
 /// The next message: its description and its body.
@@ -104,6 +135,16 @@ impl Columns {
             values: 0,
             unpacked: 0,
         }
+    }
+
+    /// Takes the rows of a message that holds some.
+    fn message(&mut self, head: &[u8], mut body: Bytes<'_>) -> Result<(), FormatFault> {
+        let root = Table::root(head).filter(|root| root.byte(1) == BATCH);
+        let Some(batch) = root.and_then(|root| root.table(2)) else {
+            return Ok(());
+        };
+        let left = body.left() as u64;
+        self.batch(&batch, body.take(left, "a batch")?)
     }
 
     fn batch(&mut self, batch: &Table<'_>, body: &[u8]) -> Result<(), FormatFault> {

@@ -112,6 +112,20 @@ impl<'a> Table<'a> {
             .collect()
     }
 
+    /// Blocks of a footer: offset, bytes of the description, bytes of the body.
+    #[cfg(feature = "arrow")]
+    pub(crate) fn blocks(&self, index: usize) -> Vec<(i64, i32, i64)> {
+        let Some((start, length)) = self.list(index, 24) else {
+            return Vec::new();
+        };
+        let long = |at: usize| number::<8>(self.bytes, at).map_or(0, i64::from_le_bytes);
+        let short = |at: usize| number::<4>(self.bytes, at).map_or(0, i32::from_le_bytes);
+        (0..length)
+            .map(|k| start + 24 * k)
+            .map(|at| (long(at), short(at + 8), long(at + 16)))
+            .collect()
+    }
+
     /// Numbers of a list.
     pub(crate) fn numbers(&self, index: usize) -> Vec<i64> {
         let Some((start, length)) = self.list(index, 8) else {

@@ -52,7 +52,11 @@ pub(crate) fn fields(message: &[u8]) -> Option<Vec<Field>> {
     if message.byte(1) != SCHEMA {
         return None;
     }
-    let schema = message.table(2)?;
+    of_schema(&message.table(2)?)
+}
+
+/// The columns of a schema.
+pub(crate) fn of_schema(schema: &Table<'_>) -> Option<Vec<Field>> {
     if schema.i16(0, 0) != 0 {
         return None;
     }

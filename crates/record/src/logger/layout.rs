@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::cells::{Cell, Dialect, SPACES, classify, split};
+use super::names::{campbell, example, names};
 use crate::error::{RecordError, shortened};
 use crate::faults::TextFault;
 use crate::select::Heading;
@@ -144,39 +145,6 @@ fn given(
     })
 }
 
-/// The four lines of a Campbell logger (TOA5): the logger, names, units, and how each was made.
-fn campbell(lines: &[&str]) -> Option<Layout> {
-    let dialect = Dialect {
-        separator: ',',
-        decimal_comma: false,
-    };
-    let cells = |k: usize| split(lines.get(k)?, ',');
-    if cells(0)?.first()? != "TOA5" {
-        return None;
-    }
-    let (names, units) = (cells(1)?, cells(2)?);
-    let headings = names.iter().enumerate();
-    let headings = headings.map(|(k, name)| {
-        // The stamp is in "TS", a running number in "RN": no units.
-        let unit = units.get(k).map_or("", |unit| {
-            if matches!(unit.as_ref(), "TS" | "RN") {
-                ""
-            } else {
-                unit
-            }
-        });
-        Heading::new(name, unit)
-    });
-    Some(Layout {
-        dialect,
-        undecided: false,
-        header: Some(1),
-        units: Some(2),
-        first_row: 4,
-        headings: headings.collect(),
-    })
-}
-
 fn no_table(file: &str, lines: &[&str]) -> RecordError {
     match lines.iter().find(|line| !line.trim().is_empty()) {
         None => RecordError::Empty {
@@ -302,7 +270,7 @@ fn headed(
         .rev()
         .filter(|&k| !is_rule(lines[k]))
         .take(2)
-        .filter_map(|k| Some((k, names(lines[k], block)?)))
+        .filter_map(|k| Some((k, names(lines[k], block.dialect.separator, block.width)?)))
         .collect();
     let (header, units) = match &above[..] {
         [units, header] if are_units(&units.1) && !is_bracketed(&header.1) => (header, Some(units)),
@@ -332,76 +300,6 @@ fn headed(
         first_row: block.start,
         headings,
     })
-}
-
-/// The names in a line, however they are separated, without the sign of a comment.
-fn names<'a>(line: &'a str, block: &Block) -> Option<Vec<Cow<'a, str>>> {
-    let plain = line.trim_start();
-    let plain = match plain.strip_prefix(['#', '%']) {
-        Some(rest) => rest.trim_start_matches(['#', '%', ' ']),
-        None => line,
-    };
-    let separator = block.dialect.separator;
-    if separator != SPACES {
-        return fitted(split(plain, separator)?, block.width);
-    }
-    // Names hold spaces; so they may stand between two, or between commas.
-    let wide = plain
-        .split("  ")
-        .map(str::trim)
-        .filter(|cell| !cell.is_empty());
-    let wide: Vec<Cow<'a, str>> = wide.map(Cow::Borrowed).collect();
-    let others = ['\t', ',', ';']
-        .into_iter()
-        .filter_map(|other| split(plain, other));
-    let all = std::iter::once(bracketed(plain))
-        .chain([wide])
-        .chain(others);
-    all.into_iter().find(|cells| cells.len() == block.width)
-}
-
-/// Words between spaces, each with the unit in brackets that follows it.
-fn bracketed(line: &str) -> Vec<Cow<'_, str>> {
-    let mut cells: Vec<Cow<'_, str>> = Vec::new();
-    for word in split(line, SPACES).unwrap_or_default() {
-        match cells.last_mut() {
-            Some(last) if word.starts_with(['[', '(']) && !last.ends_with([']', ')']) => {
-                *last = Cow::Owned(format!("{last} {word}"));
-            }
-            _ => cells.push(word),
-        }
-    }
-    cells
-}
-
-/// Names for so many columns, for a message.
-fn example(width: usize) -> String {
-    let names = ["t [s]", "u [N]", "y [mm]"];
-    let name = |k: usize| match (k, width) {
-        (1, 2) => names[2].to_owned(),
-        _ => names
-            .get(k)
-            .map_or_else(|| format!("c{} [V]", k + 1), |&name| name.to_owned()),
-    };
-    const SHOWN: usize = 8;
-    let mut list = (0..width.min(SHOWN))
-        .map(name)
-        .collect::<Vec<_>>()
-        .join(",");
-    if width > SHOWN {
-        list += ",...";
-    }
-    list
-}
-
-/// As many names as there are columns; a separator at the end of every row, or of the header
-/// alone, makes no column.
-fn fitted(mut cells: Vec<Cow<'_, str>>, width: usize) -> Option<Vec<Cow<'_, str>>> {
-    let ends_empty = cells.len() > 1 && cells.last().is_some_and(|cell| cell.is_empty());
-    if ends_empty {
-        cells.pop();
-    }
-    (cells.len() == width || cells.len() + 1 == width).then_some(cells)
 }
 
 /// A blank line or a line of dashes.

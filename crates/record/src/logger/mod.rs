@@ -6,12 +6,14 @@
 mod cells;
 mod layout;
 mod lvm;
+mod names;
 mod preamble;
 mod programs;
 mod rows;
 mod scopes;
 mod stamp;
 mod text;
+mod time_of;
 mod twincat;
 
 pub(crate) use layout::{heading, starts_by_contract};

@@ -5,15 +5,15 @@
 //! interleaved, repeated as often as they fit. What a description leaves out is as in the segment
 //! before.
 
+mod channel;
+
 use std::collections::HashMap;
 
-use crate::base::{Base, Uniform};
-use crate::bytes::{Bytes, Stored};
-use crate::error::shortened;
+use self::channel::{Channel, Kind, Share, stamp_of};
+use crate::bytes::Bytes;
 use crate::faults::FormatFault;
 use crate::note::Note;
 use crate::raw::{Raw, RawColumn, within_limit};
-use crate::{Unit, UnitKind};
 
 /// Channels that are read from one file.
 const MOST_CHANNELS: usize = 10_000;
@@ -26,83 +26,8 @@ const BIG_ENDIAN: u32 = 1 << 6;
 const DAQMX: u32 = 1 << 7;
 /// Length of a segment that was never finished.
 const UNFINISHED: u64 = u64::MAX;
-/// Type codes of text and of a stamp.
+/// Type code of text.
 const TEXT: u32 = 0x20;
-const STAMP: u32 = 0x44;
-/// 2^64: stamps count seconds in as many parts.
-const PARTS: f64 = 18_446_744_073_709_551_616.0;
-
-/// What the values of a channel are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Number(Stored),
-    Stamp,
-    /// Of this size each, and not read.
-    Other(u64),
-}
-
-impl Kind {
-    fn of(code: u32) -> Option<Kind> {
-        Some(match code {
-            1 => Kind::Number(Stored::I8),
-            2 => Kind::Number(Stored::I16),
-            3 => Kind::Number(Stored::I32),
-            4 => Kind::Number(Stored::I64),
-            5 => Kind::Number(Stored::U8),
-            6 => Kind::Number(Stored::U16),
-            7 => Kind::Number(Stored::U32),
-            8 => Kind::Number(Stored::U64),
-            9 | 0x19 => Kind::Number(Stored::F32),
-            10 | 0x1a => Kind::Number(Stored::F64),
-            0x21 => Kind::Number(Stored::U8),
-            STAMP => Kind::Stamp,
-            0x08_000c => Kind::Other(8),
-            0x10_000d => Kind::Other(16),
-            _ => return None,
-        })
-    }
-
-    fn size(self) -> u64 {
-        match self {
-            Kind::Number(stored) => stored.size() as u64,
-            Kind::Stamp => 16,
-            Kind::Other(size) => size,
-        }
-    }
-}
-
-/// Values of one channel in each round of a segment.
-#[derive(Debug, Clone, Copy)]
-struct Share {
-    channel: usize,
-    kind: Kind,
-    /// Values.
-    count: u64,
-    /// All of them, bytes.
-    bytes: u64,
-}
-
-#[derive(Debug, Default)]
-struct Channel {
-    path: String,
-    unit: String,
-    /// Step of a waveform, in its unit.
-    step: Option<f64>,
-    /// Start of a waveform after its stamp, in its unit.
-    offset: f64,
-    /// Unit of the step; seconds where it is empty.
-    x_unit: String,
-    /// What the step counts, where it is told.
-    x_name: String,
-    /// Parts of a second and seconds since 1904.
-    stamp: Option<(u64, i64)>,
-    scaled: bool,
-    unread: bool,
-    values: Vec<f64>,
-    /// Seconds of the first value that is a stamp.
-    epoch: Option<i64>,
-    last: Option<Share>,
-}
 
 /// Reads all channels of numbers and stamps.
 pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
@@ -377,74 +302,6 @@ impl File {
             }
         }
         raw
-    }
-}
-
-impl Channel {
-    /// The time base of a waveform; `None` for values without one, and why a channel is left out.
-    fn base(&self, first: Option<(u64, i64)>) -> Result<Option<Base>, String> {
-        if self.scaled {
-            return Err("its values are to be scaled by the program that wrote them".to_owned());
-        }
-        if self.unread {
-            return Err("its values are no real numbers".to_owned());
-        }
-        let Some(step) = self.step else {
-            return Ok(None);
-        };
-        let in_s = if self.x_unit.trim().is_empty() {
-            1.0
-        } else {
-            let unit = Unit::parse(&self.x_unit);
-            if unit.kind() != UnitKind::Time {
-                let unit = shortened(&self.x_unit);
-                return Err(format!(
-                    "its values stand over an axis in [{unit}], not over time"
-                ));
-            }
-            unit.si_factor()
-        };
-        if self.x_name.to_lowercase().contains("freq") {
-            return Err("its values stand over frequency, not over time".to_owned());
-        }
-        let late = |((parts, seconds), (first_parts, first_seconds)): ((u64, i64), (u64, i64))| {
-            let whole = seconds.wrapping_sub(first_seconds) as f64;
-            whole + (parts as f64 - first_parts as f64) / PARTS
-        };
-        let late_s = self.stamp.zip(first).map_or(0.0, late);
-        Ok(Some(Base::Even(Uniform {
-            start_s: late_s + self.offset * in_s,
-            step_s: step * in_s,
-            rows: self.values.len(),
-        })))
-    }
-
-    fn push(&mut self, kind: Kind, bytes: &[u8], big_endian: bool) {
-        match kind {
-            Kind::Number(stored) => self.values.extend(stored.numbers(bytes, big_endian)),
-            Kind::Other(_) => self.unread = true,
-            Kind::Stamp => {
-                self.unit = "s".to_owned();
-                for stamp in bytes.chunks_exact(16) {
-                    let (parts, seconds) = stamp_of(stamp, big_endian);
-                    let epoch = *self.epoch.get_or_insert(seconds);
-                    let whole = seconds.wrapping_sub(epoch) as f64;
-                    self.values.push(whole + parts as f64 / PARTS);
-                }
-            }
-        }
-    }
-}
-
-/// Parts of a second and seconds since 1904; the other way round in big-endian files.
-fn stamp_of(stamp: &[u8], big_endian: bool) -> (u64, i64) {
-    let mut halves = [[0; 8]; 2];
-    halves[0].copy_from_slice(&stamp[..8]);
-    halves[1].copy_from_slice(&stamp[8..16]);
-    if big_endian {
-        (u64::from_be_bytes(halves[1]), i64::from_be_bytes(halves[0]))
-    } else {
-        (u64::from_le_bytes(halves[0]), i64::from_le_bytes(halves[1]))
     }
 }
 
