@@ -82,7 +82,7 @@ fn regress_messages_about_the_header() {
         ("twice", with_line(1, "t [s],y [m],u [N],y [mm]")),
         ("open quote", with_line(1, "t [s],\"y [m]")),
     ];
-    insta::assert_snapshot!(table(&cases), @r"
+    insta::assert_snapshot!(table(&cases), @r#"
     no unit: A.csv: line 1: column 2 is headed 'y', but a name and a unit in brackets are needed, such as 'y [mm]' ('y [-]' if it has none)
     empty unit: A.csv: line 1: column 2 is headed 'y []', but a name and a unit in brackets are needed, such as 'y [mm]' ('y [-]' if it has none)
     no name: A.csv: line 1: column 2 is headed '[m]', but a name and a unit in brackets are needed, such as 'y [mm]' ('y [-]' if it has none)
@@ -92,7 +92,7 @@ fn regress_messages_about_the_header() {
     no time: A.csv: line 1: no time column found among 'x [m]', 'y [m]'; a column 't [s]' or 'time [s]' is needed, or the name of another one, with --map "t=COLUMN [s]"
     twice: A.csv: line 1: columns 2 and 4 are both named 'y'; names must differ
     open quote: A.csv: line 1: a quotation mark is not closed on this line
-    ");
+    "#);
 }
 
 #[test]
