@@ -251,7 +251,8 @@ fn damaged<E: std::fmt::Display>(what: &str) -> impl Fn(E) -> FormatFault {
     move |error| {
         let text = error.to_string();
         let reason = text.strip_prefix("HDF5 format error: ").unwrap_or(&text);
-        if reason.starts_with("invalid data layout version: 5") {
+        let newest = ["data layout version: 5", "version 2 B-tree chunk index"];
+        if newest.iter().any(|form| reason.contains(form)) {
             return FormatFault::Unsupported {
                 found: format!("{} in a form that came with HDF5 2.0", one_line(what)),
                 instead: "write the file for an older version, with libver=('earliest', 'v114') in h5py",
