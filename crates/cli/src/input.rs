@@ -73,8 +73,9 @@ pub(crate) fn record_of_inputs(
 
 /// Reads every column of a record that holds numbers.
 pub(crate) fn table(path: &Path, args: &RecordArgs) -> Result<Input, CliError> {
-    let map = args.map().map_err(RecordError::from)?;
-    let options = ReadOptions::all().with_map(map).with_mend(args.mend());
+    let options = args
+        .applied_to(ReadOptions::all())
+        .map_err(RecordError::from)?;
     Ok(told(read_file(path, &options)?))
 }
 
@@ -103,7 +104,7 @@ fn read(
     let map = args.map().map_err(RecordError::from)?;
     let channels: Vec<&str> = inputs(model).chain(outputs(model)).collect();
     map.check_channels(&channels).map_err(RecordError::from)?;
-    let options = options.with_map(map).with_mend(args.mend());
+    let options = args.applied_to(options).map_err(RecordError::from)?;
     let Input { record, notes } = told(read_file(path, &options)?);
     let record = checked(path, model, record)?;
     Ok(Input { record, notes })

@@ -1,16 +1,20 @@
 //! Numeric arrays of a workspace, as MATLAB saves it, to columns.
 
+use std::collections::HashMap;
+
 use crate::MIN_ROWS;
+use crate::base::{Base, Uniform};
 use crate::note::Note;
-use crate::raw::{Raw, RawColumn, Uniform};
+use crate::raw::{Raw, RawColumn};
+use crate::time_names::is_time_name;
 
 /// A matrix of more channels than this is no table.
 const MOST_CHANNELS: usize = 256;
 /// What a scalar that holds the sample time is called, and one that holds the sample rate.
 const STEPS: [&str; 4] = ["dt", "ts", "sample_time", "sampletime"];
-const RATES: [&str; 4] = ["fs", "f_s", "sample_rate", "samplerate"];
-/// What time is called in a workspace beside `t` and `time`.
-const TIMES: [&str; 4] = ["t", "time", "tout", "zeit"];
+const RATES: [&str; 5] = ["fs", "f_s", "sample_rate", "samplerate", "sampling_rate"];
+/// And one that holds the time of the first sample.
+const STARTS: [&str; 6] = ["t0", "t_0", "tstart", "t_start", "start_time", "starttime"];
 
 /// A numeric array: values column by column.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,53 +26,135 @@ pub(crate) struct Array {
     pub(crate) rows: usize,
     pub(crate) columns: usize,
     pub(crate) values: Vec<f64>,
+    /// What the values are counted from.
+    pub(crate) origin: f64,
+}
+
+/// The variables of a file.
+#[derive(Debug, Default)]
+pub(crate) struct Workspace {
+    pub(crate) arrays: Vec<Array>,
+    /// Texts by their paths: names and units may be among them.
+    pub(crate) texts: HashMap<String, String>,
 }
 
 /// Vectors become columns under their names, matrices one column for each channel: `data(:,2)`,
 /// or `data(2,:)` where the rows are the channels. The name of a field stands alone where no other
 /// has it.
-pub(crate) fn to_raw(arrays: Vec<Array>, notes: &mut Vec<Note>) -> Raw {
+pub(crate) fn to_raw(workspace: Workspace, notes: &mut Vec<Note>) -> Raw {
+    let Workspace { mut arrays, texts } = workspace;
+    for array in &mut arrays {
+        name_by_text(array, &texts);
+    }
     let uniform = sampled(&arrays);
     let mut columns: Vec<RawColumn> = Vec::new();
     for array in arrays {
         columns_of(array, &mut columns);
     }
     shorten(&mut columns);
-    let timed = |column: &RawColumn| TIMES.iter().any(|t| column.name.eq_ignore_ascii_case(t));
+    let timed = |column: &RawColumn| is_time_name(&column.name);
     let mut raw = Raw {
-        uniform: None,
         columns,
+        ..Raw::default()
     };
     let longest = raw.columns.iter().map(|column| column.values.len()).max();
-    if let (Some((scalar, step_s)), Some(rows)) = (uniform, longest)
+    if let (Some(sampling), Some(rows)) = (uniform, longest)
         && !raw.columns.iter().any(timed)
     {
         notes.push(Note::TimeChosen {
-            column: scalar,
+            column: sampling.scalar,
             because: "it is the only word on time in the file, and names the sampling",
         });
-        raw.uniform = Some(Uniform {
-            start_s: 0.0,
-            step_s,
+        let start_s = sampling.start.as_ref().map_or(0.0, |(_, start_s)| *start_s);
+        if let Some((column, _)) = sampling.start {
+            notes.push(Note::TimeChosen {
+                column,
+                because: "it stands beside the sampling, and is the time of the first sample",
+            });
+        }
+        raw.bases.push(Base::Even(Uniform {
+            start_s,
+            step_s: sampling.step_s,
             rows,
-        });
+        }));
     }
     raw
 }
 
-/// A scalar that tells the sampling, and the step it tells.
-fn sampled(arrays: &[Array]) -> Option<(String, f64)> {
-    arrays.iter().find_map(|array| {
-        let [value] = array.values[..] else {
-            return None;
-        };
-        let name = last_name(&array.path).to_ascii_lowercase();
+/// What loggers call the numbers of a signal in a structure, and the texts beside them: dSPACE
+/// (`Y(1).Data`, `.Name`, `.Unit`), Simulink (`signals(1).values`, `.label`).
+const NUMBERS: [&str; 5] = ["data", "values", "value", "signal", "samples"];
+const NAMES: [&str; 6] = [
+    "name",
+    "label",
+    "signalname",
+    "channelname",
+    "blockname",
+    "title",
+];
+const UNITS: [&str; 4] = ["unit", "units", "unit_string", "dimension"];
+
+/// Takes name and unit of a signal from the texts beside its numbers.
+fn name_by_text(array: &mut Array, texts: &HashMap<String, String>) {
+    let Some((parent, field)) = array.path.rsplit_once('.') else {
+        return;
+    };
+    if !NUMBERS.contains(&field.to_ascii_lowercase().as_str()) {
+        return;
+    }
+    let beside = |words: &[&str]| {
+        let mut found = words.iter().filter_map(|word| {
+            texts.iter().find_map(|(path, text)| {
+                let own = path.strip_prefix(parent)?.strip_prefix('.')?;
+                let text = text.replace(['"', '\0'], "");
+                (own.eq_ignore_ascii_case(word) && !text.trim().is_empty()).then_some(text)
+            })
+        });
+        found.next()
+    };
+    if let Some(unit) = beside(&UNITS) {
+        array.unit = unit;
+    }
+    match beside(&NAMES) {
+        // A point would cut the name short.
+        Some(name) => array.path = name.replace('.', "_"),
+        None if last_name(parent) == "X" => "time".clone_into(&mut array.path),
+        None => {}
+    }
+}
+
+/// Scalars that tell the sampling.
+struct Sampling {
+    /// Name of the one that tells the step.
+    scalar: String,
+    step_s: f64,
+    /// Name of the one that tells the first stamp, and it, s.
+    start: Option<(String, f64)>,
+}
+
+fn sampled(arrays: &[Array]) -> Option<Sampling> {
+    let scalars = || {
+        arrays.iter().filter_map(|array| {
+            let [value] = array.values[..] else {
+                return None;
+            };
+            let name = last_name(&array.path).to_ascii_lowercase();
+            value.is_finite().then_some((name, array, value))
+        })
+    };
+    let (scalar, step_s) = scalars().find_map(|(name, array, value)| {
         let step = match name.as_str() {
             name if STEPS.contains(&name) => value,
             name if RATES.contains(&name) => 1.0 / value,
             _ => return None,
         };
         (step.is_finite() && step > 0.0).then(|| (array.path.clone(), step))
+    })?;
+    let start = scalars().find(|(name, ..)| STARTS.contains(&name.as_str()));
+    Some(Sampling {
+        scalar,
+        step_s,
+        start: start.map(|(_, array, value)| (array.path.clone(), value)),
     })
 }
 
@@ -79,6 +165,7 @@ fn columns_of(array: Array, columns: &mut Vec<RawColumn>) {
         rows,
         columns: across,
         values,
+        origin,
     } = array;
     if rows.max(across) < MIN_ROWS {
         return;
@@ -88,6 +175,8 @@ fn columns_of(array: Array, columns: &mut Vec<RawColumn>) {
             name,
             unit: unit.clone(),
             values,
+            origin,
+            base: None,
         });
     };
     if rows.min(across) == 1 {

@@ -90,6 +90,11 @@ impl<'a> Bytes<'a> {
         Ok(array)
     }
 
+    #[cfg(any(feature = "xlsx", feature = "arrow"))]
+    pub(crate) fn u16(&mut self, what: &'static str) -> Result<u16, FormatFault> {
+        self.array(what).map(u16::from_le_bytes)
+    }
+
     pub(crate) fn u32(&mut self, what: &'static str) -> Result<u32, FormatFault> {
         self.array(what).map(u32::from_le_bytes)
     }
@@ -132,6 +137,42 @@ impl Stored {
             .collect()
     }
 
+    /// All numbers in some bytes and what they are counted from: integers of 64 bits beyond 2^53, as
+    /// nanoseconds since 1970 are, keep their differences.
+    pub(crate) fn counted(self, bytes: &[u8], big_endian: bool) -> (Vec<f64>, f64) {
+        if !matches!(self, Stored::I64 | Stored::U64) {
+            return (self.numbers(bytes, big_endian), 0.0);
+        }
+        let integers: Vec<i128> = bytes
+            .chunks_exact(8)
+            .map(|chunk| {
+                let mut b = [0; 8];
+                b.copy_from_slice(chunk);
+                if big_endian {
+                    b.reverse();
+                }
+                match self {
+                    Stored::I64 => i128::from(i64::from_le_bytes(b)),
+                    _ => i128::from(u64::from_le_bytes(b)),
+                }
+            })
+            .collect();
+        counted(&integers)
+    }
+
+    /// One integer of 64 or 32 bits, little-endian.
+    #[cfg(feature = "arrow")]
+    pub(crate) fn integer(self, chunk: &[u8]) -> i128 {
+        let mut b = [0; 8];
+        let size = chunk.len().min(8);
+        b[..size].copy_from_slice(&chunk[..size]);
+        match self {
+            Stored::U64 => i128::from(u64::from_le_bytes(b)),
+            Stored::I32 => i128::from(i32::from_le_bytes([b[0], b[1], b[2], b[3]])),
+            _ => i128::from(i64::from_le_bytes(b)),
+        }
+    }
+
     /// One number; 64-bit integers beyond 2^53 are rounded.
     pub(crate) fn number(self, chunk: &[u8], big_endian: bool) -> f64 {
         let mut b = [0; 8];
@@ -153,5 +194,48 @@ impl Stored {
             Stored::F32 => f64::from(f32::from_le_bytes([b0, b1, b2, b3])),
             Stored::F64 => f64::from_le_bytes(b),
         }
+    }
+}
+
+/// Integers as doubles, and what they are counted from: 0, or the first one where they have more
+/// digits than a double.
+pub(crate) fn counted(integers: &[i128]) -> (Vec<f64>, f64) {
+    const EXACT: i128 = 1 << 53;
+    let far = integers.iter().any(|k| k.abs() > EXACT);
+    let origin = integers.first().copied().filter(|_| far).unwrap_or(0);
+    let values = integers.iter().map(|k| (k - origin) as f64).collect();
+    (values, origin as f64)
+}
+
+#[cfg(any(feature = "arrow", feature = "matlab73"))]
+/// A number of half precision: sign, five bits of exponent, ten of fraction.
+pub(crate) fn half(bits: u16) -> f64 {
+    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
+    sign * match exponent {
+        0 => fraction * 2_f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1.0 + fraction / 1024.0) * 2_f64.powi(exponent - 15),
+    }
+}
+
+#[cfg(all(test, feature = "matlab73"))]
+mod tests {
+    use super::half;
+
+    #[test]
+    fn verify_half_precision() {
+        let cases = [
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x7bff, 65_504.0),
+            (0x0001, 2_f64.powi(-24)),
+            (0x3555, 0.333_251_953_125),
+        ];
+        for (bits, value) in cases {
+            assert_eq!(half(bits), value, "{bits:#x}");
+        }
+        assert!(half(0x7c01).is_nan());
     }
 }

@@ -156,7 +156,7 @@ pub enum RecordError {
     /// No column of time stamps.
     #[error(
         "{file}: line {line}: no time column found among {has}; a column 't [s]' or 'time [s]' is \
-         needed"
+         needed, or the name of another one, with --map \"t=COLUMN [s]\""
     )]
     NoTimeColumn {
         /// File or record.
@@ -244,8 +244,8 @@ pub enum RecordError {
     /// A time base that is not evenly spaced.
     #[error(
         "{file}: {at}: the time step is {} s here and {} s elsewhere, but even \
-         spacing is needed (every stamp within {UNEVEN_FRACTION} of a step of a uniform grid); \
-         resample or split the record",
+         spacing is needed (stamps off a uniform grid by no more than their rounding, and \
+         {UNEVEN_FRACTION} of a step); --mend resamples to an even step, or split the record",
         digits(*found), digits(*usual)
     )]
     UnevenTime {

@@ -21,6 +21,14 @@ pub enum MapFault {
         /// Name of the channel.
         channel: String,
     },
+    /// Names of columns that are none.
+    #[error(
+        "{found} found in the list of columns, but a different name for each column is needed, such as \"t [s],u [N],y [mm]\""
+    )]
+    Columns {
+        /// What is wrong.
+        found: String,
+    },
     /// An entry about a channel nobody asks for.
     #[error("the channel map names '{channel}', but the model has {has}{near}")]
     Channel {
@@ -58,12 +66,24 @@ pub enum SelectionFault {
         second: usize,
     },
     /// A time column whose unit is no time.
-    #[error("time column '{name}' is in [{unit}], but s, ms, us or min is needed")]
+    #[error(
+        "column '{name}' is taken for the time base and is in [{unit}], but s, ms, us or min is needed; name another one with --map \"t=COLUMN\", or its unit with --map \"t={name} [s]\""
+    )]
     TimeUnit {
         /// Name of the time column.
         name: String,
         /// Its unit.
         unit: String,
+    },
+    /// Stamps whose unit nothing settles.
+    #[error("time column '{name}' {because}; say which it is with {choices}")]
+    TimeChoice {
+        /// Name of the time column.
+        name: String,
+        /// What speaks against the unit that would be taken.
+        because: String,
+        /// The flags, each with the sample rate it makes.
+        choices: String,
     },
     /// Nothing that could be the time base.
     #[error(
@@ -76,8 +96,33 @@ pub enum SelectionFault {
         example: String,
     },
     /// No columns at all.
-    #[error("no column of numbers found, but a time base and channels are needed")]
-    Nothing,
+    #[error("no column of numbers found, but a time base and channels are needed{left_out}")]
+    Nothing {
+        /// What was left out and why, ready for the message.
+        left_out: String,
+    },
+    /// Names of columns for a file that has names.
+    #[error(
+        "names of columns are given, but only tables of text need them; name the columns of this file with --map CHANNEL=COLUMN"
+    )]
+    ColumnsOfNoTable,
+    /// Channels whose stamps lie between those of the others, where nothing may be changed.
+    #[error(
+        "channel '{column}' has stamps of its own, between those of the others, and would have to be interpolated; --mend does that"
+    )]
+    OtherStamps {
+        /// Name of the channel.
+        column: String,
+    },
+    /// Channels that were not recorded at the same time.
+    #[error(
+        "channels {columns} have time bases of their own that share fewer than {} rows, but one time base is needed",
+        crate::MIN_ROWS
+    )]
+    Apart {
+        /// Their names.
+        columns: String,
+    },
 }
 
 /// Why a fault of a record cannot be made good.
@@ -138,7 +183,7 @@ pub enum TextFault {
     },
     /// No table of numbers.
     #[error(
-        "line 1: '{first}' found, but no table of numbers in the first {looked_at} line(s), separated by comma, semicolon or tab (commas cannot separate numbers with decimal commas)"
+        "line 1: '{first}' found, but no table of numbers in the first {looked_at} line(s), separated by comma, semicolon, tab or spaces (commas cannot separate numbers with decimal commas)"
     )]
     NoTable {
         /// Lines that were looked at.
@@ -148,13 +193,39 @@ pub enum TextFault {
     },
     /// Numbers without a header.
     #[error(
-        "line {line}: {width} columns of numbers begin here, but as many names are needed in a line above them"
+        "line {line}: {width} columns of numbers begin here, but no line of as many names stands above them; name them with --columns \"{example}\""
     )]
     NoHeader {
         /// First line of the numbers, counted from 1.
         line: u64,
         /// Their columns.
         width: usize,
+        /// Names for as many columns.
+        example: String,
+    },
+    /// More or fewer names given than there are columns.
+    #[error(
+        "line {line}: {needed} columns of numbers begin here, but --columns names {found}; a name for each is needed"
+    )]
+    ColumnCount {
+        /// First line of the numbers, counted from 1.
+        line: u64,
+        /// Names given.
+        found: usize,
+        /// Columns there are.
+        needed: usize,
+    },
+    /// A file of a known program or instrument that lacks something.
+    #[error("line {line}: {found}, but {needed} is needed ({program})")]
+    Program {
+        /// Line, counted from 1.
+        line: u64,
+        /// What was found.
+        found: String,
+        /// What is needed.
+        needed: &'static str,
+        /// Whose layout it is.
+        program: &'static str,
     },
     /// A cell of the time column that is no stamp.
     #[error(

@@ -21,7 +21,13 @@ pub enum Format {
     Mdf,
     /// National Instruments TDMS.
     Tdms,
-    /// An Excel workbook or another ZIP archive.
+    /// Arrow IPC, which is Feather of version 2.
+    Arrow,
+    /// A workbook of Excel (.xlsx).
+    Xlsx,
+    /// A workbook of Excel before 2007 (.xls).
+    Xls,
+    /// Another ZIP archive.
     Zip,
     /// gzip.
     Gzip,
@@ -37,7 +43,10 @@ impl fmt::Display for Format {
             Format::Parquet => "Parquet file",
             Format::Mdf => "MDF file",
             Format::Tdms => "TDMS file",
-            Format::Zip => "ZIP archive or Excel workbook",
+            Format::Arrow => "Arrow or Feather file",
+            Format::Xlsx => "Excel workbook",
+            Format::Xls => "Excel workbook of before 2007",
+            Format::Zip => "ZIP archive",
             Format::Gzip => "gzip archive",
         })
     }
@@ -77,8 +86,18 @@ impl Format {
         if starts(b"TDSm") || starts(b"TDSh") {
             return Format::Tdms;
         }
+        if starts(b"ARROW1\0\0") || starts(b"FEA1") {
+            return Format::Arrow;
+        }
         if starts(b"PK\x03\x04") {
-            return Format::Zip;
+            let names = |name: &[u8]| head.windows(name.len()).any(|window| window == name);
+            let book = names(b"[Content_Types].xml")
+                || names(b"xl/")
+                || has_ending(path, &["xlsx", "xlsm"]);
+            return if book { Format::Xlsx } else { Format::Zip };
+        }
+        if starts(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1") {
+            return Format::Xls;
         }
         if starts(b"\x1f\x8b") {
             return Format::Gzip;
@@ -104,17 +123,24 @@ fn is_uff(head: &[u8]) -> bool {
     lines.next() == Some(b"-1") && lines.next().is_some_and(number)
 }
 
+fn ending(path: &Path) -> Option<String> {
+    let ending = path.extension()?;
+    Some(ending.to_string_lossy().to_lowercase())
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    ending(path).is_some_and(|ending| endings.contains(&ending.as_str()))
+}
+
 fn by_ending(path: &Path) -> Format {
-    let ending = path
-        .extension()
-        .map(|ending| ending.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
+    match ending(path).as_deref() {
         Some("mat") => Format::Mat5,
         Some("uff" | "unv" | "bunv") => Format::Uff,
         Some("parquet") => Format::Parquet,
         Some("mf4" | "mdf") => Format::Mdf,
         Some("tdms") => Format::Tdms,
         Some("h5" | "hdf5") => Format::Hdf5,
+        Some("arrow" | "arrows" | "feather" | "ipc") => Format::Arrow,
         _ => Format::Text,
     }
 }

@@ -6,9 +6,13 @@
 
 use hdf5_pure::{AttrValue, DType, Dataset, Group};
 
-use crate::arrays::Array;
+use crate::MIN_ROWS;
+use crate::arrays::{Array, Workspace};
+use crate::bytes::counted;
 use crate::faults::FormatFault;
 use crate::foreign::{guarded, one_line};
+use crate::hdf5_types::{Form, Member};
+use crate::note::Note;
 use crate::raw::within_limit;
 
 /// Packed best, a byte stands for a hundred numbers; those nobody wrote take no byte at all.
@@ -23,8 +27,8 @@ const NO_NUMBERS: [&str; 4] = ["char", "cell", "function_handle", "string"];
 type Attributes = std::collections::HashMap<String, AttrValue>;
 
 /// All real numeric arrays of a file of up to two dimensions.
-pub(crate) fn read(bytes: Vec<u8>) -> Result<Vec<Array>, FormatFault> {
-    guarded("the file", || {
+pub(crate) fn read(bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Workspace, FormatFault> {
+    let (arrays, left_out) = guarded("the file", || {
         let most = MOST_NUMBERS_PER_BYTE.saturating_mul(bytes.len() as u64);
         let file = hdf5_pure::File::from_bytes(bytes).map_err(damaged("the head of the file"))?;
         let mut walk = Walk {
@@ -32,13 +36,19 @@ pub(crate) fn read(bytes: Vec<u8>) -> Result<Vec<Array>, FormatFault> {
             ..Walk::default()
         };
         walk.group(&file.root(), "", 0)?;
-        Ok(walk.arrays)
+        Ok((walk.arrays, walk.left_out))
+    })?;
+    notes.extend(left_out);
+    Ok(Workspace {
+        arrays,
+        ..Workspace::default()
     })
 }
 
 #[derive(Default)]
 struct Walk {
     arrays: Vec<Array>,
+    left_out: Vec<Note>,
     objects: usize,
     /// Numbers so far.
     values: u64,
@@ -84,9 +94,14 @@ impl Walk {
     fn dataset(&mut self, dataset: &Dataset, path: &str) -> Result<(), FormatFault> {
         let what = format!("dataset '{path}'");
         let damaged = damaged(&what);
-        if !is_number(&dataset.dtype().map_err(&damaged)?) {
-            return Ok(());
-        }
+        let kind = dataset.dtype().map_err(&damaged)?;
+        let form = if is_number(&kind) {
+            Form::Plain
+        } else if let Ok(datatype) = dataset.datatype() {
+            Form::of(&datatype)
+        } else {
+            Form::Unread("its type is not known")
+        };
         let attributes = dataset.attrs().map_err(&damaged)?;
         let class = text(&attributes, "MATLAB_class");
         if attributes.contains_key("MATLAB_empty")
@@ -98,7 +113,13 @@ impl Walk {
             [] => (1, 1),
             [rows] => (1, rows),
             [outer, inner] => (outer, inner),
-            _ => return Ok(()),
+            _ => {
+                return Ok(self.leave_out(
+                    path,
+                    "it has more than two dimensions",
+                    MIN_ROWS as u64,
+                ));
+            }
         };
         let count = outer.saturating_mul(inner);
         self.values = self.values.saturating_add(count);
@@ -113,7 +134,29 @@ impl Walk {
         if let Some(chunk) = dataset.chunk_shape().map_err(&damaged)? {
             within_limit(chunk.into_iter().fold(1, u64::saturating_mul))?;
         }
-        let values = dataset.read_f64().map_err(&damaged)?;
+        let (values, origin) = match form {
+            Form::Plain if matches!(kind, DType::I64) => {
+                let integers = dataset.read_i64().map_err(&damaged)?;
+                counted(&integers.into_iter().map(i128::from).collect::<Vec<_>>())
+            }
+            Form::Plain if matches!(kind, DType::U64) => {
+                let integers = dataset.read_u64().map_err(&damaged)?;
+                counted(&integers.into_iter().map(i128::from).collect::<Vec<_>>())
+            }
+            Form::Plain => (dataset.read_f64().map_err(&damaged)?, 0.0),
+            Form::Unread(because) => return Ok(self.leave_out(path, because, count)),
+            Form::Single(number) => {
+                let raw = dataset.read_raw().map_err(&damaged)?;
+                (number.column(&raw, 0, number.size), 0.0)
+            }
+            Form::Record { size, members } => {
+                let raw = dataset.read_raw().map_err(&damaged)?;
+                if outer == 1 || inner == 1 {
+                    self.members(path, &raw, size, members);
+                }
+                return Ok(());
+            }
+        };
         if values.len() as u64 != count {
             return Err(FormatFault::Damaged {
                 what: one_line(&what),
@@ -135,8 +178,45 @@ impl Walk {
             rows,
             columns,
             values,
+            origin,
         });
         Ok(())
+    }
+
+    /// Tells of something as long as a record that is not read.
+    fn leave_out(&mut self, path: &str, because: &str, count: u64) {
+        if count >= MIN_ROWS as u64 {
+            self.left_out.push(Note::LeftOut {
+                column: path.to_owned(),
+                because: because.to_owned(),
+            });
+        }
+    }
+
+    /// The columns of a table of records, as NumPy and PyTables store it.
+    fn members(&mut self, path: &str, raw: &[u8], size: usize, members: Vec<Member>) {
+        for Member {
+            name,
+            offset,
+            number,
+        } in members
+        {
+            let path = joined(path, &name);
+            match number {
+                Err(because) => self.leave_out(&path, because, MIN_ROWS as u64),
+                Ok(number) => {
+                    let values = number.column(raw, offset, size);
+                    self.arrays.push(Array {
+                        path,
+                        unit: String::new(),
+                        rows: values.len(),
+                        columns: 1,
+                        values,
+                        origin: 0.0,
+                    });
+                }
+            }
+        }
     }
 }
 
@@ -171,6 +251,13 @@ fn damaged<E: std::fmt::Display>(what: &str) -> impl Fn(E) -> FormatFault {
     move |error| {
         let text = error.to_string();
         let reason = text.strip_prefix("HDF5 format error: ").unwrap_or(&text);
+        let newest = ["data layout version: 5", "version 2 B-tree chunk index"];
+        if newest.iter().any(|form| reason.contains(form)) {
+            return FormatFault::Unsupported {
+                found: format!("{} in a form that came with HDF5 2.0", one_line(what)),
+                instead: "write the file for an older version, with libver=('earliest', 'v114') in h5py",
+            };
+        }
         FormatFault::Damaged {
             what: one_line(what),
             reason: one_line(reason),

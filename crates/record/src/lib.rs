@@ -27,9 +27,15 @@
 //! ```
 
 mod arrays;
+#[cfg(any(feature = "arrow", feature = "parquet"))]
+mod arrow;
+mod base;
 mod batch;
 mod bytes;
+#[cfg(any(feature = "arrow", feature = "parquet"))]
+mod calendar;
 mod channel;
+mod clock;
 #[cfg(feature = "parquet")]
 mod columnar;
 mod csv_header;
@@ -37,14 +43,24 @@ mod csv_read;
 mod error;
 mod faults;
 mod fill;
-#[cfg(any(feature = "matlab73", feature = "parquet"))]
+#[cfg(any(
+    feature = "arrow",
+    feature = "matlab73",
+    feature = "mdf",
+    feature = "parquet",
+    feature = "xlsx"
+))]
 mod foreign;
 mod format;
 #[cfg(feature = "matlab73")]
 mod hdf5;
+#[cfg(feature = "matlab73")]
+mod hdf5_types;
 mod logger;
 mod map;
 mod mat5;
+#[cfg(feature = "mdf")]
+mod mdf;
 mod mend;
 mod mended;
 mod note;
@@ -58,10 +74,15 @@ mod same;
 mod select;
 mod tdms;
 mod time_base;
+mod time_names;
 mod uff;
 mod uff_lines;
 mod unit;
 mod write;
+#[cfg(feature = "xlsx")]
+mod xlsx;
+#[cfg(feature = "xlsx")]
+mod zip_size;
 
 pub use batch::{Batch, ensure_replaceable};
 pub use channel::{Channel, Conversion};

@@ -9,22 +9,41 @@ use std::io::Read as _;
 
 use flate2::read::ZlibDecoder;
 
-use crate::MAX_FILE_BYTES;
-use crate::arrays::Array;
+use crate::arrays::{Array, Workspace};
 use crate::bytes::{Bytes, Stored};
 use crate::faults::FormatFault;
+use crate::note::Note;
 use crate::raw::within_limit;
+use crate::{MAX_FILE_BYTES, MIN_ROWS};
 
 /// Structures within structures that are read.
 const DEEPEST: usize = 4;
 /// Variables and fields that are looked at.
 const MOST_ARRAYS: usize = 10_000;
 
+/// Dimensions of an array that are looked at.
+const MOST_DIMENSIONS: usize = 16;
+/// Classes of variables that are no plain numbers.
+const CELL: u32 = 1;
+const STRUCTURE: u32 = 2;
+const OBJECT_CLASS: u32 = 3;
+const CHARACTERS: u32 = 4;
+const SPARSE: u32 = 5;
+const OPAQUE: u32 = 17;
+const OBJECT: &str = "it is a table, a timeseries or another object of MATLAB; save its numbers, a table with \
+                      table2struct(x, 'ToScalar', true)";
+
 const COMPRESSED: u32 = 15;
 const MATRIX: u32 = 14;
 
 /// All real two-dimensional numeric arrays of a file.
-pub(crate) fn read(bytes: &[u8]) -> Result<Vec<Array>, FormatFault> {
+pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Workspace, FormatFault> {
+    if is_level_4(bytes) {
+        return Err(FormatFault::Unsupported {
+            found: "a MATLAB 4 file, which has numbers without structures,".to_owned(),
+            instead: "save it with -v7 in MATLAB, or as CSV",
+        });
+    }
     let mut header = Bytes::new(bytes, 0, false);
     header.take(124, "the header")?;
     let big_endian = match header.take(4, "the header")? {
@@ -34,12 +53,13 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Vec<Array>, FormatFault> {
             return Err(FormatFault::Malformed {
                 at: crate::Place::Byte(124),
                 found: format!("{other:02x?}"),
-                needed: "the version and order of bytes of a MATLAB 5 file (level 4 has no such header: save with -v7)",
+                needed: "the version and order of bytes of a MATLAB 5 file",
             });
         }
     };
     let mut file = File {
-        arrays: Vec::new(),
+        notes,
+        workspace: Workspace::default(),
         inflated: 0,
         values: 0,
     };
@@ -47,11 +67,37 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Vec<Array>, FormatFault> {
     while rest.left() > 0 {
         file.element(&mut rest, "", 0)?;
     }
-    Ok(file.arrays)
+    Ok(file.workspace)
 }
 
-struct File {
-    arrays: Vec<Array>,
+/// The head of a variable of level 4: its type, which has four digits at most, its sizes, whether
+/// it is complex, and the length of its name.
+fn is_level_4(bytes: &[u8]) -> bool {
+    let Some(head) = bytes.get(..20) else {
+        return false;
+    };
+    let number = |k: usize, big: bool| {
+        let b = [
+            head[4 * k],
+            head[4 * k + 1],
+            head[4 * k + 2],
+            head[4 * k + 3],
+        ];
+        if big {
+            u32::from_be_bytes(b)
+        } else {
+            u32::from_le_bytes(b)
+        }
+    };
+    [false, true].into_iter().any(|big| {
+        let [kind, rows, columns, complex, name] = [0, 1, 2, 3, 4].map(|k| number(k, big));
+        kind < 5000 && rows < 1 << 28 && columns < 1 << 28 && complex < 2 && (1..64).contains(&name)
+    })
+}
+
+struct File<'n> {
+    notes: &'n mut Vec<Note>,
+    workspace: Workspace,
     /// Bytes that came out of compressed elements so far.
     inflated: u64,
     /// Numbers so far.
@@ -74,7 +120,7 @@ fn element<'a>(bytes: &mut Bytes<'a>, what: &'static str) -> Result<(u32, Bytes<
     Ok((tag, data))
 }
 
-impl File {
+impl File<'_> {
     fn element(
         &mut self,
         bytes: &mut Bytes<'_>,
@@ -135,25 +181,110 @@ impl File {
         let (_, mut flags) = element(data, "the flags of a variable")?;
         let flags = flags.u32("the flags of a variable")?;
         let (class, complex) = (flags & 0xff, flags & 0x800 != 0);
+        if class == OPAQUE {
+            let name = text(element(data, "the name of a variable")?.1)?;
+            self.left_out(joined(path, &name), OBJECT);
+            return Ok(());
+        }
         let (_, mut dimensions) = element(data, "the dimensions of a variable")?;
         let mut sizes = Vec::new();
-        while dimensions.left() >= 4 && sizes.len() < 3 {
+        while dimensions.left() >= 4 && sizes.len() < MOST_DIMENSIONS {
             sizes.push(u64::from(dimensions.u32("the dimensions of a variable")?));
         }
         let own = text(element(data, "the name of a variable")?.1)?;
-        let path = match (path, own.as_str()) {
-            ("", own) => own.to_owned(),
-            (path, "") => path.to_owned(),
-            (path, own) => format!("{path}.{own}"),
-        };
+        if path.is_empty() && own.is_empty() {
+            // What MATLAB keeps for its objects.
+            return Ok(());
+        }
+        let path = joined(path, &own);
+        let count = sizes
+            .iter()
+            .fold(1_u64, |count, &size| count.saturating_mul(size));
+        // A signal of Simulink has a row for each step in the last of three dimensions.
+        if sizes.len() > 2 {
+            sizes.retain(|&size| size != 1);
+            sizes.resize(sizes.len().max(2), 1);
+        }
+        let long = count >= MIN_ROWS as u64;
         let [rows, columns] = sizes[..] else {
+            if long {
+                self.left_out(path, "it has more than two dimensions");
+            }
             return Ok(());
         };
         match class {
-            2 => self.fields(data, &path, rows.saturating_mul(columns), depth),
-            6..=15 if !complex => self.numbers(data, path, rows, columns),
+            CELL => self.cells(data, &path, count, depth),
+            STRUCTURE => self.fields(data, &path, count, depth),
+            OBJECT_CLASS => {
+                self.left_out(path, OBJECT);
+                Ok(())
+            }
+            CHARACTERS => self.characters(data, path),
+            SPARSE if long => {
+                self.left_out(path, "it is a sparse matrix; save full(x)");
+                Ok(())
+            }
+            6..=15 if complex => {
+                if long {
+                    self.left_out(path, "its values are complex; save real(x) and imag(x)");
+                }
+                Ok(())
+            }
+            6..=15 => self.numbers(data, path, rows, columns),
             _ => Ok(()),
         }
+    }
+
+    fn left_out(&mut self, column: String, because: &str) {
+        self.notes.push(Note::LeftOut {
+            column,
+            because: because.to_owned(),
+        });
+    }
+
+    /// Cells hold variables without names.
+    fn cells(
+        &mut self,
+        data: &mut Bytes<'_>,
+        path: &str,
+        count: u64,
+        depth: usize,
+    ) -> Result<(), FormatFault> {
+        if depth >= DEEPEST {
+            return Ok(());
+        }
+        for index in 0..count {
+            if data.left() == 0 {
+                break;
+            }
+            self.element(data, &format!("{path}{{{}}}", index + 1), depth + 1)?;
+        }
+        Ok(())
+    }
+
+    /// A text, which may be the name or the unit of the numbers beside it.
+    fn characters(&mut self, data: &mut Bytes<'_>, path: String) -> Result<(), FormatFault> {
+        const LONGEST: usize = 200;
+        let (kind, mut values) = element(data, "a text")?;
+        let all = values.take(values.left() as u64, "a text")?;
+        let big_endian = values.big_endian();
+        let text: String = match kind {
+            4 | 17 => {
+                let pairs = all.chunks_exact(2).take(LONGEST);
+                let units = pairs.map(|pair| match big_endian {
+                    true => u16::from_be_bytes([pair[0], pair[1]]),
+                    false => u16::from_le_bytes([pair[0], pair[1]]),
+                });
+                char::decode_utf16(units)
+                    .map(|c| c.unwrap_or(' '))
+                    .collect()
+            }
+            _ => String::from_utf8_lossy(&all[..all.len().min(LONGEST)]).into_owned(),
+        };
+        if self.workspace.texts.len() < MOST_ARRAYS {
+            self.workspace.texts.insert(path, text);
+        }
+        Ok(())
     }
 
     fn fields(
@@ -196,7 +327,7 @@ impl File {
         rows: u64,
         columns: u64,
     ) -> Result<(), FormatFault> {
-        if self.arrays.len() == MOST_ARRAYS {
+        if self.workspace.arrays.len() == MOST_ARRAYS {
             return Err(FormatFault::TooMuch {
                 most: MOST_ARRAYS as u64,
                 what: "variables",
@@ -238,16 +369,26 @@ impl File {
         self.values = self.values.saturating_add(rows.saturating_mul(columns));
         within_limit(self.values)?;
         let big_endian = values.big_endian();
-        let values = stored.numbers(values.take(bytes, "the values of a variable")?, big_endian);
+        let taken = values.take(bytes, "the values of a variable")?;
+        let (values, origin) = stored.counted(taken, big_endian);
         // Both are at most the number of bytes.
-        self.arrays.push(Array {
+        self.workspace.arrays.push(Array {
             path,
             unit: String::new(),
             rows: rows as usize,
             columns: columns as usize,
             values,
+            origin,
         });
         Ok(())
+    }
+}
+
+fn joined(path: &str, own: &str) -> String {
+    match (path, own) {
+        ("", own) => own.to_owned(),
+        (path, "") => path.to_owned(),
+        (path, own) => format!("{path}.{own}"),
     }
 }
 

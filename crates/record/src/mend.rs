@@ -22,6 +22,7 @@ pub(crate) struct Columns {
     pub(crate) time: Vec<f64>,
     pub(crate) time_unit: Unit,
     pub(crate) channels: Vec<Channel>,
+    pub(crate) time_name: String,
 }
 
 /// Makes a record. With `mend`, missing samples and an uneven time base are made good and told;
@@ -37,6 +38,7 @@ pub(crate) fn finish(
         mut time,
         time_unit,
         mut channels,
+        ..
     } = columns;
     if mend {
         let mut mended = Mended::default();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::error::{digits, shortened};
+use crate::error::{digits, name_list, shortened};
 
 /// Something that was not in the file, or not as it stands there. One sentence each.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,7 +14,7 @@ pub enum Note {
         separator: &'static str,
         /// Whether numbers have a decimal comma.
         decimal_comma: bool,
-        /// Line of the header, counted from 1.
+        /// Line of the header, counted from 1; 0 where the names were given.
         header: u64,
         /// Line of the units, where they have one of their own.
         units: Option<u64>,
@@ -46,6 +46,40 @@ pub enum Note {
     SecondsAssumed {
         /// Column of the stamps.
         column: String,
+    },
+    /// A unit of time that only the name of the column says.
+    UnitFromName {
+        /// Column of the stamps.
+        column: String,
+        /// The unit.
+        unit: &'static str,
+    },
+    /// A unit of time that stamps without a unit can only have.
+    UnitFromStamps {
+        /// Column of the stamps.
+        column: String,
+        /// The unit.
+        unit: &'static str,
+        /// The first stamp.
+        first: f64,
+    },
+    /// A time base that counts from its first stamp.
+    CountedFrom {
+        /// Column of the stamps.
+        column: String,
+        /// The first stamp and its unit.
+        first: String,
+    },
+    /// A channel with a time base of its own, brought to that of the others.
+    Aligned {
+        /// Name of the channel.
+        channel: String,
+        /// How much later than the reference it begins, s.
+        late_s: f64,
+        /// Whether its values are interpolated.
+        interpolated: bool,
+        /// Rows that all share.
+        rows: usize,
     },
     /// A time base that no name or unit tells.
     TimeChosen {
@@ -105,6 +139,13 @@ pub enum Note {
         /// A sine of this frequency loses at most 1 % in the longest interval, Hz.
         trusted_hz: f64,
     },
+    /// The sheet of a workbook that was read.
+    Sheet {
+        /// Its name.
+        name: String,
+        /// Others that hold numbers.
+        others: Vec<String>,
+    },
     /// What a file of a certain format holds beside what was read.
     Source {
         /// One sentence.
@@ -125,8 +166,12 @@ impl fmt::Display for Note {
                 let decimal = if *decimal_comma { "comma" } else { "point" };
                 write!(
                     f,
-                    "read as a table separated by {separator} with a decimal {decimal}, header in line {header}"
+                    "read as a table separated by {separator} with a decimal {decimal}, "
                 )?;
+                match header {
+                    0 => f.write_str("columns named as given")?,
+                    line => write!(f, "header in line {line}")?,
+                }
                 if let Some(line) = units {
                     write!(f, ", units in line {line}")?;
                 }
@@ -158,6 +203,28 @@ impl fmt::Display for Note {
                     quoted(column)
                 )
             }
+            Note::UnitFromName { column, unit } => write!(
+                f,
+                "time column {} read in {unit}, which its name says",
+                quoted(column)
+            ),
+            Note::UnitFromStamps {
+                column,
+                unit,
+                first,
+            } => write!(
+                f,
+                "time column {} has no unit; read in {unit}, in which its first stamp {first} is a \
+                 date of this century",
+                quoted(column)
+            ),
+            Note::CountedFrom { column, first } => write!(
+                f,
+                "time of {} counted from its first stamp, {}",
+                quoted(column),
+                shortened(first)
+            ),
+            Note::Aligned { .. } => self.aligned(f),
             Note::TimeChosen { column, because } => {
                 write!(f, "column {} taken as time: {because}", quoted(column))
             }
@@ -183,6 +250,14 @@ impl fmt::Display for Note {
                 quoted(channel)
             ),
             Note::Resampled { .. } => self.resampled(f),
+            Note::Sheet { name, others } => {
+                write!(f, "sheet {} is read", quoted(name))?;
+                if others.is_empty() {
+                    return Ok(());
+                }
+                let others = name_list(others.iter().map(String::as_str));
+                write!(f, ", which has the most numbers; not read: {others}")
+            }
             Note::Source { text } => f.write_str(text),
         }
     }
@@ -206,6 +281,28 @@ impl Note {
             Some(given) => write!(f, " in [{given}], which the map gives in place of [{unit}]"),
             None => Ok(()),
         }
+    }
+
+    fn aligned(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Note::Aligned {
+            channel,
+            late_s,
+            interpolated,
+            rows,
+        } = self
+        else {
+            return Ok(());
+        };
+        write!(f, "{} has a time base of its own", quoted(channel))?;
+        if *late_s != 0.0 {
+            let word = if *late_s > 0.0 { "later" } else { "earlier" };
+            write!(f, ", which begins {} s {word}", digits(late_s.abs()))?;
+        }
+        write!(f, "; read on the {rows} stamps that all channels share")?;
+        if *interpolated {
+            f.write_str(", by cubic interpolation")?;
+        }
+        Ok(())
     }
 
     fn resampled(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -71,7 +71,8 @@ pub fn read_file(path: &Path, options: &ReadOptions) -> Result<Reading, RecordEr
     let by_contract = format == Format::Text && starts_by_contract(&head);
     // A pipe cannot be read twice: the head goes before the rest.
     let whole = head.as_slice().chain(file);
-    if by_contract && options.map.is_empty() && options.mend != Mend::Always {
+    let plain = options.map.is_empty() && options.columns.is_empty();
+    if by_contract && plain && options.mend != Mend::Always {
         return strict(&label, name.clone(), whole, options)
             .or_else(|error| second_look(path, &label, name, options, error));
     }
@@ -109,6 +110,10 @@ fn read_bytes(
     if format == Format::Text {
         return logger::read_table(label, name, &bytes, options, mend);
     }
+    #[cfg(feature = "xlsx")]
+    if format == Format::Xlsx {
+        return workbook(label, name, &bytes, options, mend);
+    }
     let mut notes = Vec::new();
     let raw = raw_of(bytes, format, &mut notes).map_err(|fault| RecordError::Format {
         file: label.to_owned(),
@@ -116,6 +121,27 @@ fn read_bytes(
         fault,
     })?;
     assemble(label, name, raw, options, mend, notes)
+}
+
+/// The sheet with most numbers, as a table of text.
+#[cfg(feature = "xlsx")]
+fn workbook(
+    label: &str,
+    name: String,
+    bytes: &[u8],
+    options: &ReadOptions,
+    mend: bool,
+) -> Result<Reading, RecordError> {
+    let (sheet, others) = crate::xlsx::read(bytes).map_err(|fault| RecordError::Format {
+        file: label.to_owned(),
+        format: Format::Xlsx,
+        fault,
+    })?;
+    let note = Note::Sheet {
+        name: sheet.name,
+        others,
+    };
+    logger::read_sheet(label, name, &sheet.text, options, mend, note)
 }
 
 fn raw_of(bytes: Cow<'_, [u8]>, format: Format, notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
@@ -126,18 +152,27 @@ fn raw_of(bytes: Cow<'_, [u8]>, format: Format, notes: &mut Vec<Note>) -> Result
         })
     };
     match format {
-        Format::Mat5 => mat5::read(&bytes).map(|arrays| arrays::to_raw(arrays, notes)),
+        Format::Mat5 => {
+            let workspace = mat5::read(&bytes, notes)?;
+            Ok(arrays::to_raw(workspace, notes))
+        }
         Format::Uff => uff::read(&bytes, notes),
         Format::Tdms => tdms::read(&bytes, notes),
         #[cfg(feature = "matlab73")]
         Format::Hdf5 => {
-            crate::hdf5::read(bytes.into_owned()).map(|arrays| arrays::to_raw(arrays, notes))
+            let workspace = crate::hdf5::read(bytes.into_owned(), notes)?;
+            Ok(arrays::to_raw(workspace, notes))
         }
         #[cfg(feature = "parquet")]
         Format::Parquet => crate::columnar::read(bytes.into_owned(), notes),
+        #[cfg(feature = "mdf")]
+        Format::Mdf => crate::mdf::read(bytes.into_owned(), notes),
+        #[cfg(feature = "arrow")]
+        Format::Arrow => crate::arrow::read(&bytes, notes),
         #[cfg(not(feature = "matlab73"))]
         Format::Hdf5 => unread("save it with -v7 in MATLAB, or as CSV"),
-        Format::Zip => unread("save the table as CSV"),
+        Format::Zip => unread("unpack it first"),
+        Format::Xls => unread("save it as .xlsx or as CSV"),
         Format::Gzip => unread("unpack it first"),
         _ => unread("save it as CSV, Parquet, MAT, UFF or TDMS"),
     }

@@ -47,11 +47,23 @@ pub(crate) fn usual_step(time_s: &[f64]) -> f64 {
 /// Values at `start + k step`, k = 0 .. rows-1, of the curve (1) through samples at rising stamps.
 pub(crate) fn on_grid(time_s: &[f64], values: &[f64], step_s: f64, rows: usize) -> Vec<f64> {
     let start = time_s.first().copied().unwrap_or(0.0);
+    curve(
+        time_s,
+        values,
+        (0..rows).map(|row| start + row as f64 * step_s),
+    )
+}
+
+/// Values of the curve (1) at other rising stamps.
+pub(crate) fn at_stamps(time_s: &[f64], values: &[f64], stamps: &[f64]) -> Vec<f64> {
+    curve(time_s, values, stamps.iter().copied())
+}
+
+fn curve(time_s: &[f64], values: &[f64], stamps: impl Iterator<Item = f64>) -> Vec<f64> {
     let last = time_s.len().saturating_sub(2);
     let mut k = 0;
-    (0..rows)
-        .map(|row| {
-            let t = start + row as f64 * step_s;
+    stamps
+        .map(|t| {
             while k < last && time_s[k + 1] <= t {
                 k += 1;
             }
@@ -78,18 +90,23 @@ fn between(time_s: &[f64], values: &[f64], k: usize, t: f64) -> f64 {
         - s * s * r * h * m1 // (1)
 }
 
-/// Equation (2); the slope of the only step at the ends.
+/// Equation (2); at the ends the slope there of the parabola through three stamps.
 fn slope(time_s: &[f64], values: &[f64], k: usize) -> f64 {
     let step = |k: usize| {
         let h = time_s[k + 1] - time_s[k];
         (h, (values[k + 1] - values[k]) / h)
     };
-    if k == 0 {
+    let end =
+        |(h, d): (f64, f64), (h_next, d_next): (f64, f64)| d + h * (d - d_next) / (h + h_next);
+    if time_s.len() < 3 {
         return step(0).1;
+    }
+    if k == 0 {
+        return end(step(0), step(1));
     }
     let (before, d_before) = step(k - 1);
     if k + 1 == time_s.len() {
-        return d_before;
+        return end(step(k - 1), step(k - 2));
     }
     let (after, d_after) = step(k);
     (after * d_before + before * d_after) / (before + after) // (2)

@@ -1,9 +1,11 @@
 //! What is read of a file: options, and the columns they pick.
 
 use crate::error::{RecordError, name_list, shortened};
-use crate::faults::SelectionFault;
+use crate::faults::{MapFault, SelectionFault};
+use crate::logger::heading;
 use crate::map::{ChannelMap, near_names};
 use crate::note::Note;
+use crate::time_names::{is_time_name, is_unit_name};
 use crate::{Record, Unit};
 
 /// When faults of a record are made good instead of refused.
@@ -36,6 +38,8 @@ pub struct ReadOptions {
     pub(crate) wanted: Option<WantedNames>,
     pub(crate) map: ChannelMap,
     pub(crate) mend: Mend,
+    /// Names and units of the columns of a table without a header.
+    pub(crate) columns: Vec<Heading>,
 }
 
 /// Channels of the model to be read.
@@ -74,6 +78,31 @@ impl ReadOptions {
         ReadOptions { map, ..self }
     }
 
+    /// Names and units of the columns of tables of text that have no header, in their order:
+    /// `t [s],u [N],y [mm]`. A header that is there is replaced.
+    ///
+    /// # Errors
+    ///
+    /// [`MapFault::Columns`] when a name is empty or stands twice.
+    pub fn with_columns(self, columns: &str) -> Result<ReadOptions, MapFault> {
+        let columns: Vec<Heading> = columns.split(',').map(heading).collect();
+        let empty = columns.iter().any(|column| column.name.is_empty());
+        let twice = (1..columns.len()).find(|&k| {
+            columns[..k]
+                .iter()
+                .any(|column| column.name == columns[k].name)
+        });
+        if empty || twice.is_some() {
+            return Err(MapFault::Columns {
+                found: twice.map_or_else(
+                    || "an empty name".to_owned(),
+                    |k| format!("'{}' twice", shortened(&columns[k].name)),
+                ),
+            });
+        }
+        Ok(ReadOptions { columns, ..self })
+    }
+
     /// When faults are made good.
     #[must_use]
     pub fn with_mend(self, mend: Mend) -> ReadOptions {
@@ -99,7 +128,7 @@ impl Reading {
 }
 
 /// A column of a file.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Heading {
     pub(crate) name: String,
     /// Empty if the file has none.
@@ -269,61 +298,14 @@ pub(crate) fn time_column(
         let column = found.ok_or_else(|| unknown(file, &entry.column, headings))?;
         return Ok(Some(column));
     }
-    let named = |names: &[&str]| {
-        let is = |heading: &Heading| names.iter().any(|n| heading.name.eq_ignore_ascii_case(n));
-        headings.iter().position(is)
-    };
+    let named = |is: &dyn Fn(&str) -> bool| headings.iter().position(|h| is(&h.name));
+    let plain = |name: &str| ["t", "time"].iter().any(|t| name.eq_ignore_ascii_case(t));
     let by_unit = || {
         let first = headings.first()?;
         (Unit::parse(&first.unit).kind() == crate::UnitKind::Time).then_some(0)
     };
-    Ok(named(&["t", "time"])
+    Ok(named(&plain)
         .or_else(by_unit)
-        .or_else(|| named(&TIME_WORDS)))
-}
-
-/// What time columns are called beside `t` and `time`.
-const TIME_WORDS: [&str; 14] = [
-    "timestamp",
-    "time stamp",
-    "datetime",
-    "date time",
-    "date/time",
-    "zeit",
-    "zeitstempel",
-    "temps",
-    "tiempo",
-    "tempo",
-    "elapsed time",
-    "relative time",
-    "x_value",
-    "tout",
-];
-
-/// Unit of the time base: the map's, the file's, or seconds, which is then told.
-pub(crate) fn time_unit(
-    file: &str,
-    heading: &Heading,
-    map: &ChannelMap,
-    notes: &mut Vec<Note>,
-) -> Result<Unit, RecordError> {
-    let given = map.time().and_then(|entry| entry.unit.as_deref());
-    let symbol = given.unwrap_or(&heading.unit);
-    if symbol.is_empty() {
-        notes.push(Note::SecondsAssumed {
-            column: heading.name.clone(),
-        });
-        return Ok(Unit::parse("s"));
-    }
-    let unit = Unit::parse(symbol);
-    if unit.kind() != crate::UnitKind::Time {
-        return Err(RecordError::Selection {
-            file: file.to_owned(),
-            fault: SelectionFault::TimeUnit {
-                name: shortened(&heading.name),
-                unit: shortened(symbol),
-            },
-        });
-    }
-    Ok(unit)
+        .or_else(|| named(&is_time_name))
+        .or_else(|| named(&is_unit_name)))
 }

@@ -5,10 +5,11 @@
 //! uneven, ordinates alone where it is even. In 58b the values are bytes, whose number stands in
 //! the first line. Only real functions of time are read.
 
+use crate::base::{Base, Uniform};
 use crate::bytes::Stored;
 use crate::faults::FormatFault;
 use crate::note::Note;
-use crate::raw::{Raw, RawColumn, Uniform};
+use crate::raw::{Raw, RawColumn};
 use crate::uff_lines::{Lines, fortran};
 use crate::{Place, Unit, UnitKind};
 
@@ -18,14 +19,11 @@ const DESCRIPTION: usize = 11;
 const MOST_FUNCTIONS: usize = 4096;
 /// Code of time as abscissa.
 const TIME: u32 = 17;
-/// Time bases are one if they differ by less than this share: they have six digits.
-const SAME: f64 = 1e-5;
 
-/// Reads all functions of time on the time base of the first one.
+/// Reads all functions of time, each on its time base.
 pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
     let mut lines = Lines::new(bytes);
     let mut raw = Raw::default();
-    let mut base = None;
     while let Some(start) = lines.next() {
         if start.trim() != "-1" {
             continue;
@@ -44,9 +42,9 @@ pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Raw, FormatFau
                 what: "functions",
             });
         }
-        keep(function, &mut raw, &mut base, notes);
+        keep(function, &mut raw);
     }
-    if base.is_none() {
+    if raw.bases.is_empty() {
         return Err(FormatFault::Unsupported {
             found: "no real function of time".to_owned(),
             instead: "export time records as dataset 58",
@@ -63,30 +61,11 @@ struct Function {
     values: Vec<f64>,
 }
 
-/// The time base of a function.
-#[derive(PartialEq)]
-enum Base {
-    Even(Uniform),
-    Stamps(Vec<f64>),
-}
-
-impl Base {
-    fn is_like(&self, other: &Base) -> bool {
-        match (self, other) {
-            (Base::Even(a), Base::Even(b)) => {
-                let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
-                a.rows == b.rows && near(a.step_s, b.step_s) && near(a.start_s, b.start_s)
-            }
-            _ => self == other,
-        }
-    }
-}
-
-fn keep(function: Function, raw: &mut Raw, base: &mut Option<Base>, notes: &mut Vec<Note>) {
+fn keep(function: Function, raw: &mut Raw) {
     let Function {
         mut name,
         unit,
-        base: own,
+        base,
         values,
     } = function;
     let taken = |raw: &Raw, name: &str| raw.columns.iter().any(|column| column.name == name);
@@ -96,28 +75,14 @@ fn keep(function: Function, raw: &mut Raw, base: &mut Option<Base>, notes: &mut 
         name = format!("{plain} ({count})");
         count += 1;
     }
-    match base {
-        None => {
-            match &own {
-                Base::Even(uniform) => raw.uniform = Some(*uniform),
-                Base::Stamps(stamps) => raw.columns.push(RawColumn {
-                    name: "t".to_owned(),
-                    unit: "s".to_owned(),
-                    values: stamps.clone(),
-                }),
-            }
-            *base = Some(own);
-        }
-        Some(base) if base.is_like(&own) => {}
-        Some(_) => {
-            notes.push(Note::LeftOut {
-                column: name,
-                because: "its time base is not that of the first function".to_owned(),
-            });
-            return;
-        }
-    }
-    raw.columns.push(RawColumn { name, unit, values });
+    let base = Some(raw.base(base));
+    raw.columns.push(RawColumn {
+        name,
+        unit,
+        values,
+        base,
+        ..RawColumn::default()
+    });
 }
 
 /// What the lines of description say.

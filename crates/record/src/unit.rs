@@ -226,13 +226,22 @@ fn lookup(symbol: &str) -> Option<(UnitKind, f64)> {
 
 fn time(symbol: &str) -> Option<(UnitKind, f64)> {
     let factor = match symbol {
-        "s" | "sec" => 1.0,
-        "ms" => 1e-3,
-        "us" => 1e-6,
-        "ns" => 1e-9,
+        "s" | "sec" | "S" | "Sec" => 1.0,
+        "ms" | "msec" => 1e-3,
+        "us" | "usec" => 1e-6,
+        "ns" | "nsec" => 1e-9,
         "min" => 60.0,
         "h" => 3600.0,
-        _ => return None,
+        "d" => 86_400.0,
+        word => match word.to_ascii_lowercase().as_str() {
+            "second" | "seconds" | "sekunde" | "sekunden" => 1.0,
+            "millisecond" | "milliseconds" => 1e-3,
+            "microsecond" | "microseconds" => 1e-6,
+            "minute" | "minutes" => 60.0,
+            "hour" | "hours" => 3600.0,
+            "day" | "days" => 86_400.0,
+            _ => return None,
+        },
     };
     Some((UnitKind::Time, factor))
 }

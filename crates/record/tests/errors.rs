@@ -82,17 +82,17 @@ fn regress_messages_about_the_header() {
         ("twice", with_line(1, "t [s],y [m],u [N],y [mm]")),
         ("open quote", with_line(1, "t [s],\"y [m]")),
     ];
-    insta::assert_snapshot!(table(&cases), @r"
+    insta::assert_snapshot!(table(&cases), @r#"
     no unit: A.csv: line 1: column 2 is headed 'y', but a name and a unit in brackets are needed, such as 'y [mm]' ('y [-]' if it has none)
     empty unit: A.csv: line 1: column 2 is headed 'y []', but a name and a unit in brackets are needed, such as 'y [mm]' ('y [-]' if it has none)
     no name: A.csv: line 1: column 2 is headed '[m]', but a name and a unit in brackets are needed, such as 'y [mm]' ('y [-]' if it has none)
-    no header at all: A.csv: line 1: no time column found among '0.0', '1.0'; a column 't [s]' or 'time [s]' is needed
+    no header at all: A.csv: line 1: no time column found among '0.0', '1.0'; a column 't [s]' or 'time [s]' is needed, or the name of another one, with --map "t=COLUMN [s]"
     time without unit: A.csv: line 1: column 1 is headed 't', but a name and a unit in brackets are needed, such as 'y [mm]' ('y [-]' if it has none)
     time in metres: A.csv: line 1: time column 't' is in [m], but s, ms, us or min is needed
-    no time: A.csv: line 1: no time column found among 'x [m]', 'y [m]'; a column 't [s]' or 'time [s]' is needed
+    no time: A.csv: line 1: no time column found among 'x [m]', 'y [m]'; a column 't [s]' or 'time [s]' is needed, or the name of another one, with --map "t=COLUMN [s]"
     twice: A.csv: line 1: columns 2 and 4 are both named 'y'; names must differ
     open quote: A.csv: line 1: a quotation mark is not closed on this line
-    ");
+    "#);
 }
 
 #[test]
@@ -173,10 +173,10 @@ fn regress_messages_about_time() {
     insta::assert_snapshot!(table(&cases), @r"
     repeated: A.csv: line 6: time goes from 0.3 s to 0.3 s, but every stamp must be later than the one before (repeated stamps often have too few decimals)
     reversed: A.csv: line 6: time goes from 0.3 s to 0.25 s, but every stamp must be later than the one before (repeated stamps often have too few decimals)
-    gap: A.csv: line 6: the time step is 0.2 s here and 0.1 s elsewhere, but even spacing is needed (every stamp within 0.33 of a step of a uniform grid); resample or split the record
-    jitter: A.csv: line 6: the time step is 0.15 s here and 0.1 s elsewhere, but even spacing is needed (every stamp within 0.33 of a step of a uniform grid); resample or split the record
-    gap after blank lines: A.csv: line 9: the time step is 0.2 s here and 0.1 s elsewhere, but even spacing is needed (every stamp within 0.33 of a step of a uniform grid); resample or split the record
-    milliseconds: A.csv: line 6: the time step is 0.0002 s here and 0.0001 s elsewhere, but even spacing is needed (every stamp within 0.33 of a step of a uniform grid); resample or split the record
+    gap: A.csv: line 6: the time step is 0.2 s here and 0.1 s elsewhere, but even spacing is needed (stamps off a uniform grid by no more than their rounding, and 0.33 of a step); --mend resamples to an even step, or split the record
+    jitter: A.csv: line 6: the time step is 0.15 s here and 0.1 s elsewhere, but even spacing is needed (stamps off a uniform grid by no more than their rounding, and 0.33 of a step); --mend resamples to an even step, or split the record
+    gap after blank lines: A.csv: line 9: the time step is 0.2 s here and 0.1 s elsewhere, but even spacing is needed (stamps off a uniform grid by no more than their rounding, and 0.33 of a step); --mend resamples to an even step, or split the record
+    milliseconds: A.csv: line 6: the time step is 0.0002 s here and 0.0001 s elsewhere, but even spacing is needed (stamps off a uniform grid by no more than their rounding, and 0.33 of a step); --mend resamples to an even step, or split the record
     ");
 }
 

@@ -221,7 +221,6 @@ fn regress_messages_about_files_of_programs() {
         ("head.tdms", cut("waveform.tdms", 20)),
         ("claim.tdms", claimed("waveform.tdms", 12, &[0xee; 8])),
         ("index.tdms", [b"TDSh", &[0; 40][..]].concat()),
-        ("run.mf4", bytes("plain.mf4")),
         ("run.gz", b"\x1f\x8b\x08".to_vec()),
     ];
     let mut table = String::new();
@@ -241,6 +240,16 @@ fn regress_messages_about_files_for_other_crates() {
         let error = parse_file(name, bytes, &ReadOptions::all()).unwrap_err();
         error.to_string()
     };
+    let mdf = [
+        said("run.mf4", &cut("plain.mf4", 60)),
+        said("cut.mf4", &cut("plain.mf4", 2000)),
+    ];
+    if !cfg!(feature = "mdf") {
+        assert_eq!(
+            mdf[0],
+            "run.mf4: a MDF file found, which is not read; save it as CSV, Parquet, MAT, UFF or TDMS (MDF file)"
+        );
+    }
     let parquet = [
         said("run.parquet", &cut("snappy.parquet", 4)),
         said("cut.parquet", &cut("snappy.parquet", 3000)),

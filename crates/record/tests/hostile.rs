@@ -19,6 +19,42 @@ const FILES: &[&str] = &[
     "pairs.uff",
     "waveform.tdms",
     "logger.csv",
+    "variants/offset.tdms",
+    "variants/big-endian.tdms",
+    "variants/dspace.mat",
+    "variants/simulink.mat",
+    "variants/others.mat",
+    "variants/epoch-ns.mat",
+    "variants/savetxt-header.txt",
+    "instruments/lvm-one-x.lvm",
+    "instruments/lvm-each-x.lvm",
+    "instruments/F0000CH1.CSV",
+    "instruments/rigol-ds1000z.csv",
+    "instruments/gw-instek-fast.csv",
+    "instruments/twincat-scope.csv",
+    "instruments/campbell-toa5.dat",
+    "instruments/iba-clock.txt",
+    "instruments/ros-topic.csv",
+    #[cfg(feature = "arrow")]
+    "variants/lz4.feather",
+    #[cfg(feature = "arrow")]
+    "variants/zstd.feather",
+    #[cfg(feature = "arrow")]
+    "variants/polars.arrow",
+    #[cfg(feature = "xlsx")]
+    "variants/dated.xlsx",
+    #[cfg(feature = "mdf")]
+    "variants/transposed.mf4",
+    #[cfg(feature = "mdf")]
+    "variants/converted.mf4",
+    #[cfg(feature = "mdf")]
+    "variants/version-3.mdf",
+    #[cfg(feature = "parquet")]
+    "variants/polars-duration.parquet",
+    #[cfg(feature = "matlab73")]
+    "variants/latest.h5",
+    #[cfg(feature = "matlab73")]
+    "variants/records.h5",
     #[cfg(feature = "parquet")]
     "snappy.parquet",
     #[cfg(feature = "parquet")]
@@ -213,7 +249,7 @@ struct Kept<'a>(&'a str, &'a [u8]);
 impl Drop for Kept<'_> {
     fn drop(&mut self) {
         if std::thread::panicking() {
-            let path = std::env::temp_dir().join(format!("hostile-{}", self.0));
+            let path = std::env::temp_dir().join(format!("hostile-{}", self.0.replace('/', "-")));
             let written = std::fs::write(&path, self.1);
             println!("{}: {written:?}", path.display());
         }

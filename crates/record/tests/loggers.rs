@@ -375,7 +375,7 @@ fn regress_messages_about_tables_of_text() {
     };
     let map = |entry| wanted().with_map(ChannelMap::parse([entry]).unwrap());
     let stamped = "t;u;y\n2024-03-01;1;2\n2024-03-02;1;2\n2024-03-03;1;2\n";
-    let mut half = String::from("t;u;y\n");
+    let mut half = String::from("t [s];u;y\n");
     for k in 0..ROWS {
         let cell = if k % 3 == 0 { "" } else { "1,5" };
         writeln!(half, "{k};{cell};0").unwrap();
@@ -420,6 +420,11 @@ fn regress_messages_about_tables_of_text() {
         ),
         ("map of time to nothing", map("t=Zeit"), good.clone()),
         ("map of time to metres", map("t=y"), good.clone()),
+        (
+            "a count without a unit",
+            wanted(),
+            half.replace("t [s]", "t"),
+        ),
         ("half of it missing", wanted(), half),
         ("a long gap", wanted(), gap),
         (

@@ -255,14 +255,14 @@ fn verify_jitter_of_stamps_and_its_rounding() {
         [(t, Defect::TimeJitter { worst_steps, rounded_to_s: Some(unit), .. })]
             if t == "t" && *unit == 1e-3 && (0.25..0.33).contains(worst_steps)
     ));
-    // Alternately early and late by a tenth of a step.
+    // Alternately early and late by a twenty-fifth of a step.
     let alternating = of((0..900)
-        .map(|k| even(k) + 1.6384e-4 * if k % 2 == 0 { 1.0 } else { -1.0 })
+        .map(|k| even(k) + 0.04 * 1.6384e-3 * if k % 2 == 0 { 1.0 } else { -1.0 })
         .collect());
     assert!(matches!(
         &alternating[..],
         [(_, Defect::TimeJitter { rms_steps, rounded_to_s: None, .. })]
-            if (rms_steps - 0.1).abs() < 1e-3
+            if (rms_steps - 0.04).abs() < 1e-3
     ));
 }
 

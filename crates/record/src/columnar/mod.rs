@@ -13,12 +13,15 @@ use std::sync::Arc;
 use bytes::Bytes;
 use parquet::basic::CompressionCodec;
 use parquet::column::reader::{ColumnReader, get_column_reader};
-use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader, RowGroupMetaData};
+use parquet::file::metadata::{
+    FileMetaData, KeyValue, ParquetMetaData, ParquetMetaDataReader, RowGroupMetaData,
+};
 use parquet::file::serialized_reader::SerializedPageReader;
 use parquet::schema::types::ColumnDescPtr;
 
 use self::pages::{Pages, Unpacked, is_known};
 use self::values::{Column, Kind, kind_of};
+use crate::arrow::schema::{self as arrow, Field, fields};
 use crate::error::Place;
 use crate::faults::FormatFault;
 use crate::foreign::{guarded, one_line};
@@ -52,9 +55,10 @@ pub(crate) fn read(bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Raw, FormatF
         unpacked: Unpacked::default(),
     };
     let mut raw = Raw::default();
+    let told = arrow_fields(metadata.file_metadata());
     for (index, column) in columns.iter().enumerate() {
         let name = column.path().parts().join(".");
-        match kind_of(column) {
+        match kind_of(column).map(|kind| by_arrow(kind, &name, &told)) {
             Err(because) => notes.push(Note::LeftOut {
                 column: name,
                 because: because.to_owned(),
@@ -67,6 +71,55 @@ pub(crate) fn read(bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Raw, FormatF
         }
     }
     Ok(raw)
+}
+
+/// The columns as the writer knew them: pyarrow, pandas and polars keep their schema beside that of
+/// the format, which has no durations.
+fn arrow_fields(metadata: &FileMetaData) -> Vec<Field> {
+    let of_arrow = |entry: &&KeyValue| entry.key == "ARROW:schema";
+    let entry = metadata
+        .key_value_metadata()
+        .and_then(|all| all.iter().find(of_arrow));
+    let bytes = entry.and_then(|entry| base64(entry.value.as_deref()?));
+    let message = bytes.as_deref().and_then(|bytes| match bytes {
+        [0xff, 0xff, 0xff, 0xff, _, _, _, _, message @ ..] => Some(message),
+        [_, _, _, _, message @ ..] => Some(message),
+        _ => None,
+    });
+    message.and_then(fields).unwrap_or_default()
+}
+
+fn by_arrow(kind: Kind, name: &str, fields: &[Field]) -> Kind {
+    let field = fields.iter().find(|field| field.name == name);
+    match (kind, field.map(|field| field.kind)) {
+        (Kind::Number, Some(arrow::Kind::Duration { per_second })) => Kind::Duration(per_second),
+        _ => kind,
+    }
+}
+
+/// Bytes of a text of the usual 64 characters.
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut word, mut bits) = (0_u32, 0);
+    for c in text
+        .bytes()
+        .filter(|c| !c.is_ascii_whitespace() && *c != b'=')
+    {
+        let six = match c {
+            b'A'..=b'Z' => c - b'A',
+            b'a'..=b'z' => c - b'a' + 26,
+            b'0'..=b'9' => c - b'0' + 52,
+            b'+' | b'-' => 62,
+            b'/' | b'_' => 63,
+            _ => return None,
+        };
+        (word, bits) = ((word << 6 | u32::from(six)) & 0xff_ffff, bits + 6);
+        if bits >= 8 {
+            bits -= 8;
+            bytes.push((word >> bits & 0xff) as u8);
+        }
+    }
+    Some(bytes)
 }
 
 /// The bytes before the last eight, which tell their number; `None` if the crate will say why not.
@@ -100,20 +153,26 @@ fn rows_of(metadata: &ParquetMetaData, bytes: u64) -> Result<u64, FormatFault> {
 }
 
 fn named(name: String, column: Column, notes: &mut Vec<Note>) -> RawColumn {
-    let unit = if let Kind::Stamp(stamps) = column.kind {
-        notes.push(Note::Stamps {
-            column: name.clone(),
-            form: stamps.form(),
-            first: stamps.text(column.first),
-        });
-        "s"
-    } else {
-        ""
-    };
+    let (mut unit, mut origin) = ("", 0.0);
+    match column.kind {
+        Kind::Stamp(stamps) => {
+            unit = "s";
+            notes.push(Note::Stamps {
+                column: name.clone(),
+                form: stamps.form(),
+                first: stamps.text(column.first),
+            });
+        }
+        Kind::Duration(_) => unit = "s",
+        Kind::Number => origin = column.first.unwrap_or(0) as f64,
+        _ => {}
+    }
     RawColumn {
         name,
         unit: unit.to_owned(),
         values: column.values,
+        origin,
+        base: None,
     }
 }
 

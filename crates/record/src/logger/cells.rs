@@ -4,6 +4,9 @@ use std::borrow::Cow;
 
 use super::stamp::{RawStamp, parse_stamp};
 
+/// The separator that is any run of spaces and tabs.
+pub(crate) const SPACES: char = ' ';
+
 /// How cells are separated and numbers written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Dialect {
@@ -17,6 +20,7 @@ impl Dialect {
         match self.separator {
             ';' => "semicolons",
             '\t' => "tabs",
+            SPACES => "spaces",
             _ => "commas",
         }
     }
@@ -34,6 +38,9 @@ pub(crate) enum Cell {
 /// The cells of a line, trimmed; those in quotation marks without them. `None` when a quotation
 /// mark is left open.
 pub(crate) fn split(line: &str, separator: char) -> Option<Vec<Cow<'_, str>>> {
+    if separator == SPACES {
+        return spaced(line);
+    }
     if !line.contains('"') {
         let cells = line.split(separator);
         return Some(cells.map(|cell| Cow::Borrowed(cell.trim())).collect());
@@ -64,6 +71,27 @@ pub(crate) fn split(line: &str, separator: char) -> Option<Vec<Cow<'_, str>>> {
             None => return None,
         }
     }
+}
+
+/// Cells between spaces; those in quotation marks may hold some.
+fn spaced(line: &str) -> Option<Vec<Cow<'_, str>>> {
+    if !line.contains('"') {
+        return Some(line.split_whitespace().map(Cow::Borrowed).collect());
+    }
+    let mut cells = Vec::new();
+    let mut rest = line.trim();
+    while !rest.is_empty() {
+        if let Some(inner) = rest.strip_prefix('"') {
+            let (cell, tail) = quoted(inner)?;
+            cells.push(Cow::Owned(cell.trim().to_owned()));
+            rest = tail.trim_start();
+            continue;
+        }
+        let (cell, tail) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+        cells.push(Cow::Borrowed(cell));
+        rest = tail.trim_start();
+    }
+    Some(cells)
 }
 
 /// The text up to the closing quotation mark, doubled ones made single, and what follows it.

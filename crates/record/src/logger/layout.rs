@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::cells::{Cell, Dialect, classify, split};
+use super::cells::{Cell, Dialect, SPACES, classify, split};
+use super::names::{campbell, example, names};
 use crate::error::{RecordError, shortened};
 use crate::faults::TextFault;
 use crate::select::Heading;
@@ -14,7 +15,7 @@ const LOOKED_AT: usize = 2000;
 const LIKE_ROWS: usize = 3;
 
 /// Dialects in the order in which they win a tie.
-const DIALECTS: [Dialect; 6] = [
+const DIALECTS: [Dialect; 8] = [
     Dialect {
         separator: ';',
         decimal_comma: false,
@@ -40,6 +41,14 @@ const DIALECTS: [Dialect; 6] = [
         separator: ',',
         decimal_comma: true,
     },
+    Dialect {
+        separator: SPACES,
+        decimal_comma: false,
+    },
+    Dialect {
+        separator: SPACES,
+        decimal_comma: true,
+    },
 ];
 
 /// How a table is taken apart. Lines count from 0 here.
@@ -48,21 +57,38 @@ pub(crate) struct Layout {
     pub(crate) dialect: Dialect,
     /// No number that was looked at has a decimal sign.
     pub(crate) undecided: bool,
-    pub(crate) header: usize,
+    /// `None` where the names were given.
+    pub(crate) header: Option<usize>,
     pub(crate) units: Option<usize>,
     /// Line of the first row.
     pub(crate) first_row: usize,
     pub(crate) headings: Vec<Heading>,
 }
 
+/// What is known of a layout before it is guessed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Known<'a> {
+    /// Separator and decimal sign, of a sheet of a workbook.
+    pub(crate) dialect: Option<Dialect>,
+    /// Names and units in place of a header.
+    pub(crate) columns: &'a [Heading],
+}
+
 /// Guesses the layout from the first lines of a file.
 pub(crate) fn guess<'a>(
     file: &str,
     lines: impl Iterator<Item = &'a str>,
+    known: Known<'_>,
 ) -> Result<Layout, RecordError> {
     let lines: Vec<&str> = lines.take(LOOKED_AT).collect();
+    if let Some(layout) = campbell(&lines) {
+        return Ok(layout);
+    }
     let mut best: Option<(f64, Block)> = None;
-    for dialect in DIALECTS {
+    let dialects = DIALECTS
+        .into_iter()
+        .filter(|dialect| known.dialect.is_none_or(|k| k == *dialect));
+    for dialect in dialects {
         if let Some(block) = block(&lines, dialect)
             && best.as_ref().is_none_or(|(score, _)| block.score > *score)
         {
@@ -72,20 +98,51 @@ pub(crate) fn guess<'a>(
     let Some((_, block)) = best else {
         return Err(no_table(file, &lines));
     };
-    let undecided = DIALECTS.iter().any(|&other| {
-        let Dialect {
-            separator,
-            decimal_comma,
-        } = block.dialect;
-        other
-            == Dialect {
+    let undecided = known.dialect.is_none()
+        && DIALECTS.iter().any(|&other| {
+            let Dialect {
                 separator,
-                decimal_comma: !decimal_comma,
-            }
-            && separator != ','
-            && self::block(&lines, other).is_some_and(|tie| tie.score == block.score)
-    });
+                decimal_comma,
+            } = block.dialect;
+            other
+                == Dialect {
+                    separator,
+                    decimal_comma: !decimal_comma,
+                }
+                && separator != ','
+                && self::block(&lines, other).is_some_and(|tie| tie.score == block.score)
+        });
+    if !known.columns.is_empty() {
+        return given(file, &block, undecided, known.columns);
+    }
     headed(file, &lines, &block, undecided)
+}
+
+/// The layout under names that were given.
+fn given(
+    file: &str,
+    block: &Block,
+    undecided: bool,
+    columns: &[Heading],
+) -> Result<Layout, RecordError> {
+    if columns.len() != block.width {
+        return Err(RecordError::Text {
+            file: file.to_owned(),
+            fault: TextFault::ColumnCount {
+                line: block.start as u64 + 1,
+                found: columns.len(),
+                needed: block.width,
+            },
+        });
+    }
+    Ok(Layout {
+        dialect: block.dialect,
+        undecided,
+        header: None,
+        units: None,
+        first_row: block.start,
+        headings: columns.to_vec(),
+    })
 }
 
 fn no_table(file: &str, lines: &[&str]) -> RecordError {
@@ -131,7 +188,8 @@ fn shape(line: &str, dialect: Dialect) -> Option<(usize, usize)> {
     }
     let first = classify(cells.first()?, dialect.decimal_comma);
     let starts = matches!(first, Cell::Number(_) | Cell::Stamp(_));
-    (cells.len() >= 2 && (numbers >= 2 || (starts && numbers == 1 && cells.len() == 2)))
+    let spaced = dialect.separator == SPACES;
+    (cells.len() >= 2 && (numbers >= 2 || (starts && !spaced && numbers == 1 && cells.len() == 2)))
         .then_some((cells.len(), numbers))
 }
 
@@ -212,10 +270,7 @@ fn headed(
         .rev()
         .filter(|&k| !is_rule(lines[k]))
         .take(2)
-        .filter_map(|k| {
-            let cells = split(lines[k], block.dialect.separator)?;
-            Some((k, fitted(cells, block.width)?))
-        })
+        .filter_map(|k| Some((k, names(lines[k], block.dialect.separator, block.width)?)))
         .collect();
     let (header, units) = match &above[..] {
         [units, header] if are_units(&units.1) && !is_bracketed(&header.1) => (header, Some(units)),
@@ -226,14 +281,12 @@ fn headed(
                 fault: TextFault::NoHeader {
                     line: block.start as u64 + 1,
                     width: block.width,
+                    example: example(block.width),
                 },
             });
         }
     };
     let mut headings: Vec<Heading> = header.1.iter().map(|cell| heading(cell)).collect();
-    if let Some(first) = headings.first_mut() {
-        first.name = first.name.trim_start_matches(['#', '%']).trim().to_owned();
-    }
     if let Some((_, units)) = units {
         for (heading, unit) in headings.iter_mut().zip(units) {
             *heading = Heading::new(&heading.name, without_brackets(unit));
@@ -242,21 +295,11 @@ fn headed(
     Ok(Layout {
         dialect: block.dialect,
         undecided,
-        header: header.0,
+        header: Some(header.0),
         units: units.map(|(line, _)| *line),
         first_row: block.start,
         headings,
     })
-}
-
-/// As many names as there are columns; a separator at the end of every row, or of the header
-/// alone, makes no column.
-fn fitted(mut cells: Vec<Cow<'_, str>>, width: usize) -> Option<Vec<Cow<'_, str>>> {
-    let ends_empty = cells.len() > 1 && cells.last().is_some_and(|cell| cell.is_empty());
-    if ends_empty {
-        cells.pop();
-    }
-    (cells.len() == width || cells.len() + 1 == width).then_some(cells)
 }
 
 /// A blank line or a line of dashes.
@@ -286,9 +329,10 @@ fn are_units(cells: &[Cow<'_, str>]) -> bool {
 
 /// Units of no motion or force that loggers write.
 fn is_unit(symbol: &str) -> bool {
-    const OTHERS: [&str; 24] = [
-        "V", "mV", "uV", "µV", "A", "mA", "W", "kW", "%", "°C", "degC", "K", "°F", "Hz", "kHz",
-        "Ohm", "1", "l/min", "kg", "kg/s", "J", "µm/m", "um/m", "mV/V",
+    const OTHERS: [&str; 32] = [
+        "VDC", "VAC", "Volt", "Volts", "volt", "Amp", "Ampere", "counts", "V", "mV", "uV", "µV",
+        "A", "mA", "W", "kW", "%", "°C", "degC", "K", "°F", "Hz", "kHz", "Ohm", "1", "l/min", "kg",
+        "kg/s", "J", "µm/m", "um/m", "mV/V",
     ];
     Unit::parse(symbol).kind() != UnitKind::Other || OTHERS.contains(&symbol)
 }

@@ -5,9 +5,18 @@
 
 mod cells;
 mod layout;
+mod lvm;
+mod names;
+mod preamble;
+mod programs;
 mod rows;
+mod scopes;
 mod stamp;
 mod text;
+mod time_of;
+mod twincat;
 
 pub(crate) use layout::{heading, starts_by_contract};
+#[cfg(feature = "xlsx")]
+pub(crate) use rows::read_sheet;
 pub(crate) use rows::read_table;

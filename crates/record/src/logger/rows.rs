@@ -1,15 +1,19 @@
 //! The rows of a table of text.
 
 use super::cells::{Cell, Dialect, classify, split};
-use super::layout::{Layout, guess, starts_by_contract};
+use super::layout::{Known, Layout, guess, starts_by_contract};
+use super::programs;
 use super::stamp::{RawStamp, to_seconds};
 use super::text::{decode, lines};
-use crate::error::{Place, RecordError, name_list, shortened};
+use super::time_of::{TimeBase, first_cells, time_of};
+use crate::clock::{Stamps, clocked};
+use crate::error::{Place, RecordError, shortened};
 use crate::faults::TextFault;
 use crate::mend::{Columns, finish};
 use crate::note::Note;
+use crate::raw::assemble;
 use crate::record::Origin;
-use crate::select::{Heading, Pick, ReadOptions, Reading, select, time_column, time_unit};
+use crate::select::{Heading, Pick, ReadOptions, Reading, select};
 use crate::{Channel, MAX_ROWS, Unit};
 
 /// Reads a table of text whose layout has to be guessed. `name` becomes the name of the record,
@@ -22,115 +26,69 @@ pub(crate) fn read_table(
     mend: bool,
 ) -> Result<Reading, RecordError> {
     let (text, encoding) = decode(file, bytes)?;
-    let layout = guess(file, lines(&text))?;
     let mut notes: Vec<Note> = encoding.into_iter().collect();
-    let plain = !layout.dialect.decimal_comma && layout.header == 0;
-    if !(plain && starts_by_contract(text.as_bytes())) {
+    if options.columns.is_empty()
+        && let Some(raw) = programs::read(file, &text, &mut notes)?
+    {
+        return assemble(file, name, raw, options, mend, notes);
+    }
+    let known = Known {
+        columns: &options.columns,
+        ..Known::default()
+    };
+    read_text(file, name, &text, options, mend, known, notes)
+}
+
+/// Reads a sheet of a workbook, which stands as text: tabs between cells, points in numbers.
+#[cfg(feature = "xlsx")]
+pub(crate) fn read_sheet(
+    file: &str,
+    name: String,
+    text: &str,
+    options: &ReadOptions,
+    mend: bool,
+    note: Note,
+) -> Result<Reading, RecordError> {
+    let known = Known {
+        dialect: Some(Dialect {
+            separator: '\t',
+            decimal_comma: false,
+        }),
+        columns: &options.columns,
+    };
+    read_text(file, name, text, options, mend, known, vec![note])
+}
+
+fn read_text(
+    file: &str,
+    name: String,
+    text: &str,
+    options: &ReadOptions,
+    mend: bool,
+    known: Known<'_>,
+    mut notes: Vec<Note>,
+) -> Result<Reading, RecordError> {
+    let layout = guess(file, lines(text), known)?;
+    let plain = !layout.dialect.decimal_comma && layout.header == Some(0);
+    if !(plain && starts_by_contract(text.as_bytes())) && known.dialect.is_none() {
         notes.push(Note::Dialect {
             separator: layout.dialect.separated_by(),
             decimal_comma: layout.dialect.decimal_comma,
-            header: layout.header as u64 + 1,
+            header: layout.header.map_or(0, |line| line as u64 + 1),
             units: layout.units.map(|line| line as u64 + 1),
             undecided: layout.undecided,
         });
     }
-    let rows = || lines(&text).enumerate().skip(layout.first_row);
-    let time = time_of(file, &layout, rows(), options, &mut notes)?;
-    let picks = select(
-        file,
-        &layout.headings,
-        Some(time.column),
-        options,
-        &mut notes,
-    )?;
+    let rows = || lines(text).enumerate().skip(layout.first_row);
+    let before = || lines(text).take(layout.first_row);
+    let time = time_of(file, &layout, rows(), before(), options, &mut notes)?;
+    let picks = select(file, &layout.headings, time.column, options, &mut notes)?;
     let picks = with_numbers(picks, &layout, rows(), options, &mut notes);
     let mut table = Table::new(file, &layout, &time, &picks);
     for (line, text) in rows() {
         table.push(line as u64 + 1, text)?;
     }
-    table.record(name, picks, time, mend, notes)
-}
-
-/// The time base as the headings and the first row tell it.
-struct TimeBase {
-    column: usize,
-    /// A column of times of day beside a column of dates.
-    clock: Option<usize>,
-    stamped: bool,
-    unit: Unit,
-}
-
-fn time_of<'a>(
-    file: &str,
-    layout: &Layout,
-    rows: impl Iterator<Item = (usize, &'a str)>,
-    options: &ReadOptions,
-    notes: &mut Vec<Note>,
-) -> Result<TimeBase, RecordError> {
-    let first = first_cells(layout.dialect, rows);
-    let stamp = |column: usize| match first.get(column) {
-        Some(Cell::Stamp(stamp)) => Some(*stamp),
-        _ => None,
-    };
-    let column = match time_column(file, &layout.headings, &options.map)? {
-        Some(column) => column,
-        None => {
-            let column = (0..layout.headings.len()).find(|&k| stamp(k).is_some());
-            let column = column.ok_or_else(|| RecordError::NoTimeColumn {
-                file: file.to_owned(),
-                line: layout.header as u64 + 1,
-                has: name_list(layout.headings.iter().map(|heading| heading.name.as_str())),
-            })?;
-            notes.push(Note::TimeChosen {
-                column: layout.headings[column].name.clone(),
-                because: "it holds dates or times of day",
-            });
-            column
-        }
-    };
-    let Some(found) = stamp(column) else {
-        let unit = time_unit(file, &layout.headings[column], &options.map, notes)?;
-        return Ok(TimeBase {
-            column,
-            clock: None,
-            stamped: false,
-            unit,
-        });
-    };
-    // A date and a time of day in neighbouring columns belong together, whichever is named time.
-    let half = |k: usize, clock: bool| {
-        let stamp = stamp(k)?;
-        (stamp.date.is_none() == clock && stamp.clock.is_some() == clock).then_some(k)
-    };
-    let date_before = || column.checked_sub(1).and_then(|k| half(k, false));
-    let (column, clock) = match (found.date, found.clock) {
-        (Some(_), None) => (column, half(column + 1, true)),
-        (None, Some(_)) => match date_before() {
-            Some(date) => (date, Some(column)),
-            None => (column, None),
-        },
-        _ => (column, None),
-    };
-    Ok(TimeBase {
-        column,
-        clock,
-        stamped: true,
-        unit: Unit::parse("s"),
-    })
-}
-
-/// What the cells of the first row hold.
-fn first_cells<'a>(
-    dialect: Dialect,
-    mut rows: impl Iterator<Item = (usize, &'a str)>,
-) -> Vec<Cell> {
-    let row = rows.find(|(_, line)| !line.trim().is_empty());
-    let cells = row.and_then(|(_, line)| split(line, dialect.separator));
-    let cells = cells.unwrap_or_default();
-    cells
-        .iter()
-        .map(|cell| classify(cell, dialect.decimal_comma))
-        .collect()
+    table.record(name, picks, time, (options, mend), notes)
 }
 
 /// Where every column is read, those of words are left out and told.
@@ -180,6 +138,8 @@ struct Table<'a> {
     stamped: bool,
     clocked: bool,
     time: Vec<f64>,
+    /// Whole part of the first stamp, where it has too many digits for a double.
+    origin: Option<i64>,
     stamps: Vec<RawStamp>,
     first_stamp: String,
     columns: Vec<Vec<f64>>,
@@ -189,7 +149,9 @@ struct Table<'a> {
 impl<'a> Table<'a> {
     fn new(file: &'a str, layout: &'a Layout, time: &TimeBase, picks: &[Pick]) -> Table<'a> {
         let mut slots = vec![Vec::new(); layout.headings.len()];
-        slots[time.column].push(Slot::Time);
+        if let Some(column) = time.column {
+            slots[column].push(Slot::Time);
+        }
         if let Some(clock) = time.clock {
             slots[clock].push(Slot::Clock);
         }
@@ -200,11 +162,12 @@ impl<'a> Table<'a> {
             file,
             dialect: layout.dialect,
             headings: &layout.headings,
-            header_line: layout.header as u64 + 1,
+            header_line: layout.header.unwrap_or(layout.first_row) as u64 + 1,
             slots,
             stamped: time.stamped,
             clocked: time.clock.is_some(),
             time: Vec::new(),
+            origin: None,
             stamps: Vec::new(),
             first_stamp: String::new(),
             columns: vec![Vec::new(); picks.len()],
@@ -251,7 +214,7 @@ impl<'a> Table<'a> {
     fn take(&mut self, line: u64, index: usize, slot: Slot, cell: &str) -> Result<(), RecordError> {
         let held = classify(cell, self.dialect.decimal_comma);
         match (slot, held) {
-            (Slot::Time, Cell::Number(value)) if !self.stamped => self.time.push(value),
+            (Slot::Time, Cell::Number(value)) if !self.stamped => self.count(cell, value),
             (Slot::Time, Cell::Stamp(stamp)) if self.stamped => {
                 if self.stamps.is_empty() {
                     self.first_stamp = cell.to_owned();
@@ -271,6 +234,26 @@ impl<'a> Table<'a> {
             _ => return Err(self.not_held(line, index, slot, cell)),
         }
         Ok(())
+    }
+
+    /// Takes a stamp. Counts since 1970 have more digits than a double: the whole part of the first
+    /// is taken off before they become one.
+    fn count(&mut self, cell: &str, value: f64) {
+        const LONG: f64 = 1e9;
+        let (whole, part) = cell.split_once(['.', ',']).unwrap_or((cell, ""));
+        let whole = whole.parse::<i64>().ok();
+        if self.time.is_empty() && value >= LONG {
+            self.origin = whole;
+        }
+        let Some(origin) = self.origin else {
+            self.time.push(value);
+            return;
+        };
+        let part = format!("0.{part}").parse::<f64>();
+        self.time.push(match (whole, part) {
+            (Some(whole), Ok(part)) => (i128::from(whole) - i128::from(origin)) as f64 + part,
+            _ => value - origin as f64,
+        });
     }
 
     fn not_held(&self, line: u64, index: usize, slot: Slot, cell: &str) -> RecordError {
@@ -300,12 +283,25 @@ impl<'a> Table<'a> {
         name: String,
         picks: Vec<Pick>,
         base: TimeBase,
-        mend: bool,
+        (options, mend): (&ReadOptions, bool),
         mut notes: Vec<Note>,
     ) -> Result<Reading, RecordError> {
-        let time_name = self.headings[base.column].name.clone();
+        let heading = base.column.map(|column| &self.headings[column]);
+        let time_name = heading.map_or_else(|| "t".to_owned(), |heading| heading.name.clone());
+        let mut time = std::mem::take(&mut self.time);
+        let mut time_unit = Unit::parse("s");
         if self.stamped && !self.stamps.is_empty() {
-            self.time = self.seconds(&time_name, &mut notes)?;
+            time = self.seconds(&time_name, &mut notes)?;
+        } else if let Some(heading) = heading {
+            let stamps = Stamps {
+                values: time,
+                origin: self.origin.unwrap_or(0) as f64,
+            };
+            (time, time_unit) = clocked(self.file, heading, &options.map, stamps, &mut notes)?;
+        } else {
+            time = (0..self.lines.len())
+                .map(|k| k as f64 * base.step_s)
+                .collect();
         }
         let channels = picks.into_iter().zip(std::mem::take(&mut self.columns));
         let channels = channels
@@ -324,9 +320,10 @@ impl<'a> Table<'a> {
             row: &line_of,
         };
         let columns = Columns {
-            time: std::mem::take(&mut self.time),
-            time_unit: base.unit,
+            time,
+            time_unit,
             channels,
+            time_name: time_name.clone(),
         };
         let record = finish(name, &origin, columns, mend, &mut notes)?;
         Ok(Reading { record, notes })

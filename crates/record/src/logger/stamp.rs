@@ -85,12 +85,38 @@ fn date(text: &str) -> Option<(Order, [u32; 3])> {
         4 => digits(c, 4)?,
         _ => return None,
     };
+    if let Some(month) = month(b) {
+        return Some((Order::DayMonthYear, [digits(a, 2)?, month, year]));
+    }
     let order = if separator == '.' {
         Order::DayMonthYear
     } else {
         Order::Open
     };
     Some((order, [digits(a, 2)?, digits(b, 2)?, year]))
+}
+
+/// The number of a month of English or German name.
+fn month(name: &str) -> Option<u32> {
+    const NAMES: [&[&str]; 12] = [
+        &["jan"],
+        &["feb"],
+        &["mar", "mrz"],
+        &["apr"],
+        &["may", "mai"],
+        &["jun"],
+        &["jul"],
+        &["aug"],
+        &["sep"],
+        &["oct", "okt"],
+        &["nov"],
+        &["dec", "dez"],
+    ];
+    let name = name.to_ascii_lowercase();
+    let at = NAMES
+        .iter()
+        .position(|names| names.contains(&name.as_str()))?;
+    u32::try_from(at + 1).ok()
 }
 
 /// `hh:mm[:ss[.fff]]` with AM or PM or an offset from UTC; nanoseconds, seconds of offset.
@@ -121,6 +147,12 @@ fn clock(text: &str) -> Option<(i64, i64)> {
             // 60 is a leap second.
             (whole(second, 61)?, nanos(fraction)?)
         }
+    };
+    // Some loggers put a colon before the milliseconds.
+    let nanos = match parts.next() {
+        None => nanos,
+        Some(millis) if millis.len() == 3 && nanos == 0 => self::nanos(millis)?,
+        Some(_) => return None,
     };
     if parts.next().is_some() {
         return None;

@@ -5,12 +5,15 @@
 //! interleaved, repeated as often as they fit. What a description leaves out is as in the segment
 //! before.
 
+mod channel;
+
 use std::collections::HashMap;
 
-use crate::bytes::{Bytes, Stored};
+use self::channel::{Channel, Kind, Share, stamp_of};
+use crate::bytes::Bytes;
 use crate::faults::FormatFault;
 use crate::note::Note;
-use crate::raw::{Raw, RawColumn, Uniform, within_limit};
+use crate::raw::{Raw, RawColumn, within_limit};
 
 /// Channels that are read from one file.
 const MOST_CHANNELS: usize = 10_000;
@@ -23,75 +26,8 @@ const BIG_ENDIAN: u32 = 1 << 6;
 const DAQMX: u32 = 1 << 7;
 /// Length of a segment that was never finished.
 const UNFINISHED: u64 = u64::MAX;
-/// Type codes of text and of a stamp.
+/// Type code of text.
 const TEXT: u32 = 0x20;
-const STAMP: u32 = 0x44;
-/// 2^64: stamps count seconds in as many parts.
-const PARTS: f64 = 18_446_744_073_709_551_616.0;
-
-/// What the values of a channel are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Number(Stored),
-    Stamp,
-    /// Of this size each, and not read.
-    Other(u64),
-}
-
-impl Kind {
-    fn of(code: u32) -> Option<Kind> {
-        Some(match code {
-            1 => Kind::Number(Stored::I8),
-            2 => Kind::Number(Stored::I16),
-            3 => Kind::Number(Stored::I32),
-            4 => Kind::Number(Stored::I64),
-            5 => Kind::Number(Stored::U8),
-            6 => Kind::Number(Stored::U16),
-            7 => Kind::Number(Stored::U32),
-            8 => Kind::Number(Stored::U64),
-            9 | 0x19 => Kind::Number(Stored::F32),
-            10 | 0x1a => Kind::Number(Stored::F64),
-            0x21 => Kind::Number(Stored::U8),
-            STAMP => Kind::Stamp,
-            0x08_000c => Kind::Other(8),
-            0x10_000d => Kind::Other(16),
-            _ => return None,
-        })
-    }
-
-    fn size(self) -> u64 {
-        match self {
-            Kind::Number(stored) => stored.size() as u64,
-            Kind::Stamp => 16,
-            Kind::Other(size) => size,
-        }
-    }
-}
-
-/// Values of one channel in each round of a segment.
-#[derive(Debug, Clone, Copy)]
-struct Share {
-    channel: usize,
-    kind: Kind,
-    /// Values.
-    count: u64,
-    /// All of them, bytes.
-    bytes: u64,
-}
-
-#[derive(Debug, Default)]
-struct Channel {
-    path: String,
-    unit: String,
-    step_s: Option<f64>,
-    offset_s: f64,
-    scaled: bool,
-    unread: bool,
-    values: Vec<f64>,
-    /// Seconds of the first stamp.
-    epoch: Option<i64>,
-    last: Option<Share>,
-}
 
 /// Reads all channels of numbers and stamps.
 pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Raw, FormatFault> {
@@ -125,17 +61,18 @@ impl File {
                 needed: "a segment, which begins with TDSm (TDSh begins an index file; read the .tdms beside it)",
             });
         }
+        // The contents are little-endian whatever they say of the rest.
         let contents = rest.u32(WHAT)?;
-        rest.take(4, WHAT)?;
-        let (length, described) = (rest.u64(WHAT)?, rest.u64(WHAT)?);
+        let big_endian = contents & BIG_ENDIAN != 0;
+        let mut head = rest.part(20, WHAT)?.ordered(big_endian);
+        head.take(4, WHAT)?;
+        let (length, described) = (head.u64(WHAT)?, head.u64(WHAT)?);
         let length = if length == UNFINISHED {
             rest.left() as u64
         } else {
             length
         };
-        let mut body = rest
-            .part(length, "a segment")?
-            .ordered(contents & BIG_ENDIAN != 0);
+        let mut body = rest.part(length, "a segment")?.ordered(big_endian);
         let mut description = body.part(described, "the description of a segment")?;
         if contents & NEW_LIST != 0 {
             self.round.clear();
@@ -245,8 +182,11 @@ impl File {
             let channel = &mut self.channels[channel];
             if code == TEXT {
                 let value = text(bytes)?;
-                if name == "unit_string" {
-                    channel.unit = value;
+                match name.as_str() {
+                    "unit_string" => channel.unit = value,
+                    "wf_xunit_string" => channel.x_unit = value,
+                    "wf_xname" => channel.x_name = value,
+                    _ => {}
                 }
                 continue;
             }
@@ -256,11 +196,14 @@ impl File {
                 needed: "a type of the format",
             })?;
             let raw = bytes.take(kind.size(), WHAT)?;
+            if kind == Kind::Stamp && name == "wf_start_time" {
+                channel.stamp = Some(stamp_of(raw, bytes.big_endian()));
+            }
             let Kind::Number(stored) = kind else { continue };
             let value = stored.number(raw, bytes.big_endian());
             match name.as_str() {
-                "wf_increment" if value > 0.0 => channel.step_s = Some(value),
-                "wf_start_offset" => channel.offset_s = value,
+                "wf_increment" if value > 0.0 => channel.step = Some(value),
+                "wf_start_offset" if value.is_finite() => channel.offset = value,
                 "NI_Number_Of_Scales" => channel.scaled = value > 0.0,
                 _ => {}
             }
@@ -326,6 +269,8 @@ impl File {
         for channel in &self.channels {
             *names.entry(last_name(&channel.path)).or_default() += 1;
         }
+        // Starts count from the first stamp, which has more digits than a double.
+        let first = self.channels.iter().find_map(|channel| channel.stamp);
         for channel in self.channels {
             let short = last_name(&channel.path);
             let name = match names.get(&short) {
@@ -336,70 +281,27 @@ impl File {
                     .trim_start_matches('/')
                     .to_owned(),
             };
-            let mut left_out = |because: &str| {
-                notes.push(Note::LeftOut {
-                    column: name.clone(),
-                    because: because.to_owned(),
-                });
-            };
-            if channel.scaled {
-                left_out("its values are to be scaled by the program that wrote them");
-            } else if channel.unread {
-                left_out("its values are no real numbers");
-            } else if channel.values.is_empty() {
+            if channel.values.is_empty() && !channel.unread {
                 continue;
-            } else {
-                if let (Some(step_s), None) = (channel.step_s, raw.uniform) {
-                    raw.uniform = Some(Uniform {
-                        start_s: channel.offset_s,
-                        step_s,
-                        rows: channel.values.len(),
+            }
+            match channel.base(first) {
+                Err(because) => notes.push(Note::LeftOut {
+                    column: name,
+                    because,
+                }),
+                Ok(base) => {
+                    let base = base.map(|base| raw.base(base));
+                    raw.columns.push(RawColumn {
+                        name,
+                        unit: channel.unit,
+                        values: channel.values,
+                        base,
+                        ..RawColumn::default()
                     });
                 }
-                if let (Some(step_s), Some(uniform)) = (channel.step_s, raw.uniform)
-                    && step_s != uniform.step_s
-                {
-                    left_out("its step is not that of the first channel");
-                    continue;
-                }
-                raw.columns.push(RawColumn {
-                    name,
-                    unit: channel.unit,
-                    values: channel.values,
-                });
             }
         }
         raw
-    }
-}
-
-impl Channel {
-    fn push(&mut self, kind: Kind, bytes: &[u8], big_endian: bool) {
-        match kind {
-            Kind::Number(stored) => self.values.extend(stored.numbers(bytes, big_endian)),
-            Kind::Other(_) => self.unread = true,
-            Kind::Stamp => {
-                self.unit = "s".to_owned();
-                for stamp in bytes.chunks_exact(16) {
-                    let (parts, seconds) = stamp_of(stamp, big_endian);
-                    let epoch = *self.epoch.get_or_insert(seconds);
-                    let whole = seconds.wrapping_sub(epoch) as f64;
-                    self.values.push(whole + parts as f64 / PARTS);
-                }
-            }
-        }
-    }
-}
-
-/// Parts of a second and seconds since 1904; the other way round in big-endian files.
-fn stamp_of(stamp: &[u8], big_endian: bool) -> (u64, i64) {
-    let mut halves = [[0; 8]; 2];
-    halves[0].copy_from_slice(&stamp[..8]);
-    halves[1].copy_from_slice(&stamp[8..16]);
-    if big_endian {
-        (u64::from_be_bytes(halves[1]), i64::from_be_bytes(halves[0]))
-    } else {
-        (u64::from_le_bytes(halves[0]), i64::from_le_bytes(halves[1]))
     }
 }
 
