@@ -31,4 +31,4 @@ pub use paper::{
     table2, table3, table4, table5,
 };
 pub use printed::{HarmonicList, PrintedValue, Source, Unit};
-pub use stated::{StatedValue, StatedValues, stated_values};
+pub use stated::{StatedLines, StatedValue, StatedValues, stated_values};

@@ -145,6 +145,13 @@ fn val_park_stated_values() {
     );
     assert_eq!(stated.image_base.si(), 50.0);
     assert_eq!(stated.all().len(), 27);
+    let lines: Vec<[f64; 3]> = stated
+        .lines
+        .iter()
+        .map(|row| [row.excitation_hz, row.lower.si(), row.upper.si()])
+        .collect();
+    let expected = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|f| [f, 50.0 - f, 50.0 + f]);
+    assert_eq!(lines, expected);
     assert_eq!(
         stated.first_natural_freq.source().to_string(),
         "section 3.1: First natural frequency in the pressure spectrum"
