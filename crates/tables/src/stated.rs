@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use crate::{PrintedValue, Source, TableError, Unit};
 
-pub(crate) const STATED: &str = include_str!("../../../fixtures/paper/stated.toml");
+pub(crate) const STATED: &str = include_str!("../fixtures/stated.toml");
 const FILE: &str = "stated.toml";
 const SCHEMA: &str = "simgap-paper-stated/1";
 

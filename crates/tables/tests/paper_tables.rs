@@ -13,7 +13,7 @@ fn verify_checksum_seal() {
 
 #[test]
 fn verify_checksum_sees_every_digit() {
-    let text = include_str!("../../../fixtures/paper/table4.toml");
+    let text = include_str!("../fixtures/table4.toml");
     let sealed = CHECKSUMS[3].1;
     assert_eq!(fixture_checksum(text), sealed);
     let digits = text
@@ -161,7 +161,7 @@ fn val_park_stated_values() {
 #[test]
 fn verify_errors_say_what_is_needed_and_where() {
     let message = |error: TableError| error.to_string();
-    let text = include_str!("../../../fixtures/paper/table1.toml");
+    let text = include_str!("../fixtures/table1.toml");
 
     let not_a_number = text.replace("8,287,639", "8.287.639");
     assert_eq!(
