@@ -51,11 +51,8 @@ fn verify_packages_hold_what_they_need() {
         let files: Vec<&str> = listed.lines().collect();
         assert!(files.contains(&"README.md"), "{name}: no README.md");
         assert!(files.contains(&"src/lib.rs"), "{name}");
-        let example = |file: &&str| file.starts_with("examples/") && file.ends_with(".rs");
-        assert!(
-            files.iter().any(|file| example(&file)),
-            "{name}: no example"
-        );
+        let example = |file: &str| file.starts_with("examples/") && file.ends_with(".rs");
+        assert!(files.iter().any(|file| example(file)), "{name}: no example");
         if name == "tables" {
             let fixtures = files
                 .iter()

@@ -88,9 +88,10 @@ fn val_peaks_are_as_high_as_put_in() {
     let found = rows("peaks", "Table 2, displacement");
     for freq in 1..=7 {
         let turned = std::f64::consts::TAU * f64::from(freq) * timing;
+        let excitation = freq.to_string();
         let high = |line: f64| {
             let of = |row: &&serde_json::Value| {
-                row["f [Hz]"] == freq.to_string() && row["printed [Hz]"] == line
+                row["f [Hz]"] == excitation.as_str() && row["printed [Hz]"] == line
             };
             let row = found.iter().find(of).unwrap();
             row["height [µm]"].as_f64().unwrap()

@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .map(|n| {
             let t = f64::from(n) / 100.0;
             let dither = f64::from((n * 7919) % 101) / 101.0 - 0.5;
-            2.0 * (TAU * 3.14 * t).cos() + 0.2 * (TAU * 11.3 * t).sin() + 0.01 * dither
+            2.0 * (TAU * 4.7 * t).cos() + 0.2 * (TAU * 11.3 * t).sin() + 0.01 * dither
         })
         .collect();
     let found = spectrum(&record, 100.0, Window::Hann, Trend::Mean)?;
