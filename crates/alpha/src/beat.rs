@@ -21,6 +21,7 @@ use crate::least_squares::{linear, nonlinear};
 ///
 /// Reference: `park-mold`, Table 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BeatParameters {
     /// F₀.
     pub amplitude: f64,
@@ -32,6 +33,7 @@ pub struct BeatParameters {
 
 /// The two lines of a beat, (2).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LinePair {
     /// Lower line ω/2, Hz.
     pub lower_hz: f64,
@@ -92,6 +94,7 @@ impl LinePair {
 /// f(t) = F₀ cos(π δ t + φ_s) cos(π (ω + δ) t + φ_c)
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BeatFit {
     /// F₀, ω, δ.
     pub parameters: BeatParameters,

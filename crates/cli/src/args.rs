@@ -22,6 +22,10 @@ pub(crate) enum Command {
     Simulate(SimulateArgs),
     /// Compare a measured with a simulated trace, without a model file.
     Compare(CompareArgs),
+    /// Poles, modes and frequency responses of a model file.
+    Modes(ModesArgs),
+    /// What each parameter of a model file does to its poles, ranked.
+    Sensitivity(SensitivityArgs),
     /// Diagnose an embedded record of the mold oscillator and write the report.
     Demo(DemoArgs),
     /// Write a commented model file to start from, with the columns of a record.
@@ -164,6 +168,33 @@ pub(crate) struct CompareArgs {
     #[arg(long)]
     pub(crate) align_start: bool,
     /// Folder for comparison.json, comparison.html and compared.csv; without it nothing is written.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value = "human")]
+    pub(crate) format: Format,
+}
+
+#[derive(Args)]
+pub(crate) struct ModesArgs {
+    /// Model file (TOML, schema simgap-model/1).
+    pub(crate) model: PathBuf,
+    /// Folder for modes.json and modes.svg; without it nothing is written.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value = "human")]
+    pub(crate) format: Format,
+}
+
+#[derive(Args)]
+pub(crate) struct SensitivityArgs {
+    /// Model file (TOML, schema simgap-model/1).
+    pub(crate) model: PathBuf,
+    /// Tolerance of every parameter, percent: how far it moves a frequency is told beside the slope.
+    #[arg(long, value_name = "PERCENT", default_value_t = 2.0)]
+    pub(crate) tolerance: f64,
+    /// Folder for sensitivity.json and sensitivity.svg; without it nothing is written.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// What is printed.

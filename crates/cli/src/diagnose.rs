@@ -55,7 +55,10 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     let folders = [PREDICTIONS, PICTURES];
     Folder::attempt(&args.out, &folders, &files(&args.out, &stems, &[]))?;
     let begun = Instant::now();
-    let is_spent = || args.budget.is_some_and(|budget| begun.elapsed().as_secs_f64() > budget);
+    let is_spent = || {
+        args.budget
+            .is_some_and(|budget| begun.elapsed().as_secs_f64() > budget)
+    };
     let request = Request {
         withheld: &args.withhold,
         is_spent: &is_spent,

@@ -7,6 +7,7 @@ use simgap_diagnose::compare::CompareError;
 use simgap_effects::EffectError;
 use simgap_model::ModelError;
 use simgap_record::RecordError;
+use simgap_report::chart::ChartError;
 use simgap_report::page::ReportError;
 use simgap_simulate::SimulateError;
 use thiserror::Error;
@@ -72,6 +73,10 @@ pub(crate) enum CliError {
         found: String,
         near: String,
     },
+    #[error("--tolerance is {found}, needed is a number of percent above 0 and up to 100")]
+    Tolerance { found: f64 },
+    #[error(transparent)]
+    Chart(#[from] ChartError),
     #[error("--jobs is {found}, needed is 1 to {most}")]
     Jobs { found: usize, most: usize },
     #[error("the threads could not be started ({found}), needed is a smaller --jobs")]

@@ -14,10 +14,12 @@ mod folder;
 mod init;
 mod input;
 mod manifest;
+mod modes;
 mod pointer;
 mod progress;
 mod record_args;
 mod repeated;
+mod sensitivity;
 mod shell;
 mod simulate;
 mod text;
@@ -56,6 +58,8 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(args),
         Command::Demo(args) => demo::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Modes(args) => modes::run(args),
+        Command::Sensitivity(args) => sensitivity::run(args),
         Command::Init(args) => init::run(args),
         Command::Check(args) => check::run(args),
         Command::Effects(args) => effects::run(args),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use simgap_effects::Action;
-use simgap_estimate::{Problem, FitOptions, fit_initial_states, simulator_at};
+use simgap_estimate::{FitOptions, Problem, fit_initial_states, simulator_at};
 use simgap_record::write_csv_atomic;
 use simgap_simulate::{Run, output_unit};
 

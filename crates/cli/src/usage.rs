@@ -29,7 +29,12 @@ pub(crate) fn one_line(error: &clap::Error, arguments: &[String]) -> Option<Stri
             of(ContextKind::ValidValue)
         ),
         ErrorKind::ValueValidation => {
-            format!("{argument} is \"{value}\", needed is a whole number")
+            let whole = if argument.contains("PERCENT") {
+                ""
+            } else {
+                "whole "
+            };
+            format!("{argument} is \"{value}\", needed is a {whole}number")
         }
         _ => first_line(&error.to_string()),
     };

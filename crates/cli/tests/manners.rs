@@ -169,7 +169,7 @@ fn verify_a_full_disk_leaves_the_old_result() {
     bench.done(&args.split(' ').collect::<Vec<_>>());
     bench.write("B.csv", other(90));
     let before = bench.everything();
-    let mut refused = |out: &str| {
+    let refused = |out: &str| {
         let program = env!("CARGO_BIN_EXE_simgap");
         let limited = format!("trap '' XFSZ; ulimit -f 8; exec {program} {args}");
         let mut shell = Command::new("sh");

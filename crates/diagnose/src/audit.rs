@@ -13,7 +13,7 @@
 //! two have to do with each other. These are hints: nothing is changed, and the diagnosis does not
 //! hang on them.
 
-use simgap_estimate::{Problem, FitOptions, fit_initial_states};
+use simgap_estimate::{FitOptions, Problem, fit_initial_states};
 use simgap_model::{Model, Output, undamped_modes};
 use simgap_record::{AuditFinding, AuditTopic, Record};
 use simgap_signal::correlation::autocorrelation;

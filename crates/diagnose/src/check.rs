@@ -9,12 +9,12 @@ use simgap_inference::CandidateModel;
 use simgap_inference::noise_model::{accuracy, input_noise};
 use simgap_simulate::{MemberPath, Run, substeps_for};
 
+use crate::Gap;
 use crate::excerpt::excerpts;
 use crate::gap::{Prediction, gap, predict, total};
 use crate::multi_step::contradicts;
-use crate::spread::spread_of_check;
-use crate::Gap;
 use crate::pipeline::place_of;
+use crate::spread::spread_of_check;
 
 /// What is left of the gap, rms, from which an answer is incomplete.
 const INCOMPLETE: f64 = 0.05;
@@ -83,11 +83,21 @@ impl<'a> Check<'a> {
             .collect::<Result<Vec<Prediction>, EstimateError>>()?;
         let driven = input_noise(&self.problem, placed, &self.plain, &self.train.runs)?;
         let corrected = (placed, &predictions[2]);
-        let gap = gap(&self.problem, &predictions[0], &predictions[1], corrected, &driven);
+        let gap = gap(
+            &self.problem,
+            &predictions[0],
+            &predictions[1],
+            corrected,
+            &driven,
+        );
         let spread = match self.train.is_whitened() {
             // Over whole records noise of the inputs is all that is left; it is told beside the gap.
             true => 0.0,
-            false => spread_of_check(&self.problem, (self.train, estimate, options), &predictions[2])?,
+            false => spread_of_check(
+                &self.problem,
+                (self.train, estimate, options),
+                &predictions[2],
+            )?,
         };
         let of_simulation = self.accuracy(placed, &predictions[2])?;
         let left_of_channels = left_of_channels(&gap, spread, &of_simulation);
@@ -120,7 +130,11 @@ impl<'a> Check<'a> {
             paths: vec![self.paths(&predictions[2])],
             predictions,
             gap,
-            sample_rate_hz: self.problem.runs.first().map_or(1.0, |run| 1.0 / run.time_step_s),
+            sample_rate_hz: self
+                .problem
+                .runs
+                .first()
+                .map_or(1.0, |run| 1.0 / run.time_step_s),
             notes,
         })
     }
@@ -128,11 +142,19 @@ impl<'a> Check<'a> {
     /// Accuracy of the simulation over the motion of each channel.
     fn accuracy(&self, placed: &[Placed], last: &Prediction) -> Result<Vec<f64>, EstimateError> {
         let mut fit = self.recalibrated.clone();
-        fit.estimate.nominal = placed.iter().filter(|p| simgap_inference::is_nominal(p)).cloned().collect();
+        fit.estimate.nominal = placed
+            .iter()
+            .filter(|p| simgap_inference::is_nominal(p))
+            .cloned()
+            .collect();
         fit.estimate.initial.clone_from(&last.initial);
         let delta = accuracy(&self.problem, &fit)?;
         let std = self.problem.output_std();
-        Ok(delta.iter().zip(std).map(|(delta, std)| delta / std).collect())
+        Ok(delta
+            .iter()
+            .zip(std)
+            .map(|(delta, std)| delta / std)
+            .collect())
     }
 
     /// The motion at each output along the first record.
@@ -152,7 +174,9 @@ impl<'a> Check<'a> {
     /// What single sets leave of excerpts of the check records.
     pub(crate) fn held_back(&self, sets: &[&CandidateModel]) -> Result<Vec<f64>, EstimateError> {
         let nothing = vec![vec![]; self.problem.runs.len()];
-        let short = self.problem.with_runs(excerpts(&self.problem.runs, &nothing));
+        let short = self
+            .problem
+            .with_runs(excerpts(&self.problem.runs, &nothing));
         sets.par_iter()
             .map(|set| {
                 let placed: Vec<Placed> = set.fit.estimate.placed().cloned().collect();

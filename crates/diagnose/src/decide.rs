@@ -3,8 +3,8 @@
 use simgap_effects::Placed;
 use simgap_estimate::Start;
 use simgap_inference::{
-    CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, Search, model_posterior,
-    name, other,
+    CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, Search, model_posterior, name,
+    other,
 };
 
 use crate::pipeline::{Prepared, are_parameters};
@@ -88,7 +88,11 @@ fn small_errors(
     gap: &[f64],
     decision: &mut Decision,
 ) -> Result<(), DiagnoseError> {
-    let stated: Vec<f64> = first.nominal.iter().map(|p| search.problem.stated_std(p)).collect();
+    let stated: Vec<f64> = first
+        .nominal
+        .iter()
+        .map(|p| search.problem.stated_std(p))
+        .collect();
     let widest = stated.iter().copied().fold(0.0, f64::max);
     let parameters = search.of_stated_parameters(widest);
     let exact = parameters.fit(&Start {
@@ -110,4 +114,3 @@ fn small_errors(
     decision.start.nominal = others.cloned().collect::<Vec<Placed>>();
     Ok(())
 }
-

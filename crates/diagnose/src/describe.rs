@@ -56,7 +56,11 @@ pub(crate) fn verdict(
         true => (vec![], named),
         false => (named, vec![]),
     };
-    let status = if is_unknown { Status::Unknown } else { decision.status };
+    let status = if is_unknown {
+        Status::Unknown
+    } else {
+        decision.status
+    };
     Verdict {
         status,
         complete: checked.is_complete && !is_unknown,
@@ -140,7 +144,10 @@ fn sentences(posterior: &EffectPosterior, parameters: &[NamedParameter]) -> Vec<
     let gains = parameters.iter().filter(|p| p.name == "gain_factor");
     for slip in gains.filter_map(|gain| slip_of(gain.value)) {
         let at = &posterior.placed.at;
-        sentences.push(format!("looks like a slip of units or sign {at}: {}", slip.name));
+        sentences.push(format!(
+            "looks like a slip of units or sign {at}: {}",
+            slip.name
+        ));
     }
     sentences.push(format!(
         "without it the log posterior of the set falls by {:.1}",
@@ -166,7 +173,10 @@ fn unexplained(model: &Model, checked: &Checked) -> Unexplained {
         of: "gap",
         channels: channels.collect(),
         looks_like: match checked.left > 0.0 {
-            true => looks_like(model, checked, 2).into_iter().next().unwrap_or_default(),
+            true => looks_like(model, checked, 2)
+                .into_iter()
+                .next()
+                .unwrap_or_default(),
             false => String::new(),
         },
     }
@@ -202,7 +212,8 @@ fn description(model: &Model, decision: &Decision, checked: &Checked) -> Vec<Str
         );
     }
     let channels = checked.gap.channels.iter();
-    for channel in channels.filter(|c| 1.0 - c.recalibrated.min(c.corrected).powi(2) < UNCONNECTED) {
+    for channel in channels.filter(|c| 1.0 - c.recalibrated.min(c.corrected).powi(2) < UNCONNECTED)
+    {
         sentences.push(format!(
             "channel {} has nothing to do with the inputs: no set of the catalogue explains a tenth of it",
             channel.channel
@@ -211,9 +222,15 @@ fn description(model: &Model, decision: &Decision, checked: &Checked) -> Vec<Str
     if let Some(law) = &decision.other.law {
         let at = &law.placed.at;
         let closed = 100.0 * (1.0 - law.left);
-        sentences.push(format!("a free law {at} closes {closed:.0} % of the gap of the training records"));
+        sentences.push(format!(
+            "a free law {at} closes {closed:.0} % of the gap of the training records"
+        ));
     }
-    if let Some(best) = decision.posterior.best().filter(|best| !best.effects().is_empty()) {
+    if let Some(best) = decision
+        .posterior
+        .best()
+        .filter(|best| !best.effects().is_empty())
+    {
         let nearest: Vec<String> = best.effects().iter().map(name).collect();
         sentences.push(format!(
             "the best set of the catalogue, {}, leaves {:.0} % of it",
@@ -231,7 +248,11 @@ pub(crate) fn candidates(
     verdict: &Verdict,
     check: &Check<'_>,
 ) -> Result<Vec<CandidateResult>, EstimateError> {
-    let singles = decision.posterior.sets.iter().filter(|set| set.effects().len() == 1);
+    let singles = decision
+        .posterior
+        .sets
+        .iter()
+        .filter(|set| set.effects().len() == 1);
     let singles: Vec<&CandidateModel> = singles.take(LISTED).collect();
     let gaps = check.held_back(&singles)?;
     let own = 1.0 - verdict.other.probability;
@@ -273,7 +294,11 @@ pub(crate) fn locations(decision: &Decision, is_unknown: bool) -> Vec<LocationSh
         }),
     };
     let own = 1.0 - decision.other.probability;
-    let sets = decision.posterior.sets.iter().zip(&decision.posterior.probabilities);
+    let sets = decision
+        .posterior
+        .sets
+        .iter()
+        .zip(&decision.posterior.probabilities);
     for (set, probability) in sets {
         for placed in set.effects() {
             add(&placed.at, own * probability / set.effects().len() as f64);
@@ -283,7 +308,11 @@ pub(crate) fn locations(decision: &Decision, is_unknown: bool) -> Vec<LocationSh
         if let Some(law) = &decision.other.law {
             add(&law.placed.at, decision.other.probability);
         }
-    } else if decision.posterior.best().is_none_or(|best| best.effects().is_empty()) {
+    } else if decision
+        .posterior
+        .best()
+        .is_none_or(|best| best.effects().is_empty())
+    {
         for effect in &decision.effects {
             add(&effect.placed.at, effect.probability);
         }

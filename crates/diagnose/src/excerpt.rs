@@ -21,10 +21,16 @@ pub(crate) fn excerpts(runs: &[Run], left: &[Vec<Vec<f64>>]) -> Vec<Run> {
     let stride = total.div_ceil(SEARCH_SAMPLES) | 1;
     let is_smooth = |run: &Run, left: &Vec<Vec<f64>>| {
         let [of_input, of_rest] = MISSED;
-        run.inputs.iter().all(|input| missed(input, stride) < of_input)
+        run.inputs
+            .iter()
+            .all(|input| missed(input, stride) < of_input)
             && left.iter().all(|rest| missed(rest, stride) < of_rest)
     };
-    if runs.iter().zip(left).all(|(run, left)| is_smooth(run, left)) {
+    if runs
+        .iter()
+        .zip(left)
+        .all(|(run, left)| is_smooth(run, left))
+    {
         return runs.iter().map(|run| run.thinned(stride)).collect();
     }
     let share = SEARCH_SAMPLES as f64 / total as f64;
@@ -101,7 +107,10 @@ mod tests {
         assert_eq!((smooth.len, smooth.time_step_s), (10_000, 0.003));
         // A line near half the sample rate is lost at a lower one.
         let rough = found(&decay, |t| 0.1 * (3000.0 * t).cos());
-        assert_eq!((rough.len, rough.time_step_s, rough.first_index), (12_000, 0.001, 0));
+        assert_eq!(
+            (rough.len, rough.time_step_s, rough.first_index),
+            (12_000, 0.001, 0)
+        );
         let short = run(2000, |t| t.sin());
         assert_eq!(found(&short, |t| t).len, 2000);
     }

@@ -1,7 +1,7 @@
 //! The answer, fitted to all samples.
 
 use simgap_effects::{Family, Placed};
-use simgap_estimate::{EstimateError, Fit, Problem, Start, FitOptions, fit, fit_initial_states};
+use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Start, fit, fit_initial_states};
 
 /// Fits a set that was found on an excerpt to whole records.
 ///

@@ -1,12 +1,11 @@
 //! How large the gap is on the check records.
 
 use simgap_effects::Placed;
-use simgap_estimate::{EstimateError, Problem, FitOptions, fit_initial_states, simulator_at};
+use simgap_estimate::{EstimateError, FitOptions, Problem, fit_initial_states, simulator_at};
 use simgap_inference::noise_model::{InputNoise, noise_variance, stepped};
 use simgap_simulate::Simulator;
 
 use crate::diagnosis::{ChannelGap, Gap};
-
 
 /// A nominal gap that stands out of the noise by less than this share of its square is none: what
 /// is closed of it would be a ratio of roundings.

@@ -79,5 +79,5 @@ mod structure;
 
 pub use diagnosis::*;
 pub use error::DiagnoseError;
-pub use sets::{FittedEffect, FittedSet};
 pub use pipeline::{Outcome, Progress, Request, diagnose};
+pub use sets::{FittedEffect, FittedSet};

@@ -49,7 +49,14 @@ mod tests {
 
     #[test]
     fn stretches_cover_a_run_and_are_not_short() {
-        for (len, count) in [(0, 1), (127, 1), (255, 1), (256, 2), (1210, 9), (90_000, 20)] {
+        for (len, count) in [
+            (0, 1),
+            (127, 1),
+            (255, 1),
+            (256, 2),
+            (1210, 9),
+            (90_000, 20),
+        ] {
             let run = Run {
                 name: "a".into(),
                 start_s: 2.0,

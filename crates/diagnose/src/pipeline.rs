@@ -15,9 +15,9 @@ use simgap_record::{Defect, QualityFinding, Record};
 
 use crate::check::Check;
 use crate::data::{Data, divide};
-use crate::excerpt::excerpts;
 use crate::decide::{Decision, decide};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
+use crate::excerpt::excerpts;
 use crate::final_fit::fit_to_all;
 use crate::locate::Located;
 use crate::outcome::{corrected_model, series};
@@ -115,7 +115,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let start = Start {
         effects: vec![],
         nominal: prepared.parameters.clone(),
-        initial: fit_initial_states(&prepared.excerpt, &[], &options)?.estimate.initial,
+        initial: fit_initial_states(&prepared.excerpt, &[], &options)?
+            .estimate
+            .initial,
     };
     let baseline = fit(&prepared.excerpt, &start, &options)?;
     let noise = NoiseModel::new(&prepared.excerpt, &baseline, &prepared.recalibrated)?;
@@ -150,7 +152,16 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
         true => prepared.recalibrated.clone(),
         false => estimate,
     };
-    finish(request, &data, &prepared, decision, estimate, &final_options, progress, stopped_early)
+    finish(
+        request,
+        &data,
+        &prepared,
+        decision,
+        estimate,
+        &final_options,
+        progress,
+        stopped_early,
+    )
 }
 
 fn known_kinds(withheld: &[String]) -> Result<(), DiagnoseError> {

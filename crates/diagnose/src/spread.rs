@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 use simgap_effects::Placed;
-use simgap_estimate::{EstimateError, Fit, Problem, FitOptions, deviations};
+use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, deviations};
 
 use crate::gap::{Prediction, predict, total};
 

@@ -1,6 +1,7 @@
 //! What the audit of records against a model says, and when it is silent.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[allow(dead_code)]
 mod common;
 
 use common::{plant, record};

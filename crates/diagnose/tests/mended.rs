@@ -1,6 +1,7 @@
 //! Samples that were missing and filled are no defect of the measurement chain.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[allow(dead_code)]
 mod common;
 
 use std::fmt::Write as _;
@@ -45,12 +46,7 @@ fn verify_filled_samples_are_not_taken_for_lost_ones() {
             > 60
     );
     let model = plant();
-    let request = Request {
-        model: &model,
-        train: &records[..2],
-        check: &records[2..],
-        withheld: &[],
-    };
+    let request = Request::new(&model, &records[..2], &records[2..]);
     let outcome = diagnose(&request, &|_| {}).unwrap();
     let kinds: Vec<String> = named(&outcome).into_iter().map(|(kind, _)| kind).collect();
     assert_eq!(

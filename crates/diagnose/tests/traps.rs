@@ -103,8 +103,7 @@ fn verify_a_wrong_law_that_fits_is_told_as_such() {
     assert_eq!(named(&known), [("quadratic_damping".into(), ground())]);
     let outcome = diagnosed(&truth, &["quadratic_damping"]);
     let verdict = &outcome.diagnosis.verdict;
-    let honest =
-        verdict.status == Status::Unknown || !verdict.complete;
+    let honest = verdict.status == Status::Unknown || !verdict.complete;
     assert!(honest, "{verdict:?}");
 }
 
@@ -153,8 +152,7 @@ fn verify_a_law_is_not_made_of_a_spring_that_is_gone() {
     let truth = [placed("backlash", ground(), &[4e-4])];
     let outcome = diagnosed(&truth, &["backlash"]);
     let verdict = &outcome.diagnosis.verdict;
-    let honest =
-        verdict.status == Status::Unknown || !verdict.complete;
+    let honest = verdict.status == Status::Unknown || !verdict.complete;
     assert!(honest, "{verdict:?}");
 }
 

@@ -52,7 +52,10 @@ pub const SLIPS: [Slip; 15] = [
     slip(1e-2, "a hundred times the unit"),
     slip(9.806_65, "kgf or g instead of N or m/s²"),
     slip(1.0 / 9.806_65, "g instead of m/s², or N instead of kgf"),
-    slip(std::f64::consts::TAU, "turns instead of rad, or Hz instead of rad/s"),
+    slip(
+        std::f64::consts::TAU,
+        "turns instead of rad, or Hz instead of rad/s",
+    ),
     slip(1.0 / std::f64::consts::TAU, "rad instead of turns"),
     slip(180.0 / std::f64::consts::PI, "degrees instead of rad"),
     slip(std::f64::consts::PI / 180.0, "rad instead of degrees"),
@@ -224,10 +227,13 @@ pub fn usual_prior(effect: &(impl Effect + ?Sized), place: usize, scale: &SiteSc
         return Prior::factor();
     }
     let width = parameter.upper - parameter.lower;
-    if width.is_finite() && (parameter.lower == 0.0 || parameter.lower < 0.0 && parameter.neutral.is_none()) {
+    if width.is_finite()
+        && (parameter.lower == 0.0 || parameter.lower < 0.0 && parameter.neutral.is_none())
+    {
         return Prior::Uniform { width };
     }
-    let has_no_sign = parameter.lower == f64::NEG_INFINITY && parameter.neutral.is_none_or(f64::is_infinite);
+    let has_no_sign =
+        parameter.lower == f64::NEG_INFINITY && parameter.neutral.is_none_or(f64::is_infinite);
     if has_no_sign {
         let [low, high] = scale.signal_range;
         return Prior::Normal {
@@ -266,7 +272,10 @@ mod tests {
         assert_eq!(local.log_weight, 0.0);
         let either = Parameter::size("force_n", "N", f64::NEG_INFINITY, f64::INFINITY);
         let local = Prior::size(2.0).local(-4.0, &either);
-        assert_eq!((local.coordinate, local.log_weight), (4.0_f64.ln(), 0.5_f64.ln()));
+        assert_eq!(
+            (local.coordinate, local.log_weight),
+            (4.0_f64.ln(), 0.5_f64.ln())
+        );
     }
 
     #[test]

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use simgap_effects::{Placed, SiteScale, find};
-use simgap_estimate::{Candidate, Problem, Start, FitOptions, fit, linearise_at, score};
+use simgap_estimate::{Candidate, FitOptions, Problem, Start, fit, linearise_at, score};
 use simgap_model::{Location, Model};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
 

@@ -13,7 +13,7 @@ use crate::linearise::{Linearised, Signals, discrepancy, linearise};
 use crate::normal::normal_equations;
 use crate::products::{inner, inner_products};
 use crate::reach::Reach;
-use crate::{Candidate, EstimateError, Fit, Problem, Start, FitOptions};
+use crate::{Candidate, EstimateError, Fit, FitOptions, Problem, Start};
 
 /// Columns that keep less than this of their energy past the nuisance are explained by it: a trial is not small enough
 /// to be linear beyond that.
@@ -140,7 +140,8 @@ pub fn linearise_at<'a>(
         weights: channel_weights,
         factor: factorise(&hessian),
         gradient,
-        independent_samples: count * weights.effective_share.iter().sum::<f64>() - filled.sum::<f64>(),
+        independent_samples: count * weights.effective_share.iter().sum::<f64>()
+            - filled.sum::<f64>(),
     })
 }
 

@@ -24,7 +24,7 @@ use crate::linearise::{
 use crate::normal::{damped_step, normal_equations, variances};
 use crate::products::dot;
 use crate::reach::Reach;
-use crate::{EstimateError, Problem, Start, FitOptions};
+use crate::{EstimateError, FitOptions, Problem, Start};
 
 /// A parameter value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -387,7 +387,9 @@ impl<'a> Merit<'a> {
     /// The second sum of (1).
     pub(crate) fn prior(&self, layout: &Layout, theta: &[f64]) -> f64 {
         let entries = theta.iter().enumerate();
-        entries.map(|(i, value)| layout.prior_at(i, *value)[0]).sum()
+        entries
+            .map(|(i, value)| layout.prior_at(i, *value)[0])
+            .sum()
     }
 
     pub(crate) fn weights(&self, variance: &[f64]) -> Vec<f64> {

@@ -7,7 +7,7 @@ use simgap_simulate::Simulator;
 
 use crate::drift;
 use crate::fit::fit_with;
-use crate::{EstimateError, Fit, Problem, Start, FitOptions};
+use crate::{EstimateError, Fit, FitOptions, Problem, Start};
 
 /// Fits what a record has of its own, with everything else as given: the initial state, and of
 /// effects with a clock or a hidden state the phase or the start.

@@ -102,9 +102,8 @@ fn various(
     let mut chosen = vec![];
     for (set, score) in list {
         let members = || set.iter().map(|k| columns[*k].candidate);
-        let is_new = |candidate: &&Candidate| {
-            met.iter().filter(|known| known == &candidate).count() < OFTEN
-        };
+        let is_new =
+            |candidate: &&Candidate| met.iter().filter(|known| known == &candidate).count() < OFTEN;
         if chosen.len() < most && members().all(|candidate| is_new(&candidate)) {
             met.extend(members());
             chosen.push(score);
@@ -127,7 +126,10 @@ impl Base<'_> {
     ) -> Option<JointScore> {
         let of = |k: &usize| &columns[*k];
         for (n, k) in set.iter().enumerate() {
-            if set[..n].iter().any(|other| of(other).candidate == of(k).candidate) {
+            if set[..n]
+                .iter()
+                .any(|other| of(other).candidate == of(k).candidate)
+            {
                 return None;
             }
         }

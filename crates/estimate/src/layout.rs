@@ -207,7 +207,11 @@ impl Layout {
         let Some((prior, parameter)) = &self.priors[entry] else {
             let deviation = (value - self.prior_mean[entry]) / self.prior_std[entry];
             let slope = deviation / self.prior_std[entry];
-            return [0.5 * deviation.powi(2), slope, self.prior_std[entry].powi(-2)];
+            return [
+                0.5 * deviation.powi(2),
+                slope,
+                self.prior_std[entry].powi(-2),
+            ];
         };
         let local = prior.local(value, parameter);
         let deviation = (local.coordinate - local.mean) / local.std;
@@ -333,7 +337,9 @@ impl Layout {
         let of_effect = |&(e, i): &(usize, usize)| Owner::Effect(e, i);
         let mut owners: Vec<Owner> = self.shared_values.iter().map(of_effect).collect();
         let nominal = self.nominal.iter().enumerate();
-        owners.extend(nominal.flat_map(|(n, p)| (0..p.values.len()).map(move |i| Owner::Nominal(n, i))));
+        owners.extend(
+            nominal.flat_map(|(n, p)| (0..p.values.len()).map(move |i| Owner::Nominal(n, i))),
+        );
         for _ in &self.middle_s {
             owners.extend(self.own_values.iter().map(of_effect));
             owners.extend((0..self.state_len).map(|_| Owner::State));

@@ -83,14 +83,14 @@ mod site;
 mod spread;
 mod whitening;
 
-pub use curvature::{Coordinate, Curvature, Owner};
 pub use base::{Base, linearise_at};
+pub use curvature::{Coordinate, Curvature, Owner};
 pub use fit::{Fit, Interval, fit};
 pub use initial::{fit_initial_states, fit_initial_states_from, simulator_at};
 pub use joint::{JointScore, joint_scores};
 pub use layout::{Candidate, Start};
 pub use outright::score_outright;
-pub use problem::{Problem, FitOptions};
+pub use problem::{FitOptions, Problem};
 pub use score::{Score, score, score_shapes};
 pub use spread::deviations;
 pub use whitening::Whitening;

@@ -364,8 +364,8 @@ mod tests {
     use simgap_simulate::Run;
 
     use super::*;
-    use crate::layout::Freedom;
     use crate::Start;
+    use crate::layout::Freedom;
 
     const OSCILLATOR: &str = r#"schema = "simgap-model/1"
 name = "oscillator"

@@ -14,7 +14,7 @@ use simgap_effects::Placed;
 
 use crate::base::LinearSystem;
 use crate::normal::factorise;
-use crate::{EstimateError, Fit, Problem, FitOptions};
+use crate::{EstimateError, Fit, FitOptions, Problem};
 
 /// Variance of a value, in units of its own scale, from which the data do not see it at all.
 const UNSEEN: f64 = 1.0;

@@ -4,7 +4,7 @@
 mod support;
 
 use simgap_effects::{Placed, catalogue};
-use simgap_estimate::{Fit, Problem, FitOptions, Whitening, fit};
+use simgap_estimate::{Fit, FitOptions, Problem, Whitening, fit};
 use simgap_model::{Location, Model};
 use simgap_simulate::{Mended, Run};
 use support::{OSCILLATOR, between, drive, model, noisy, placed, start, truth};
@@ -56,7 +56,7 @@ fn fitted(model: &Model, run: Run, whitening: &Whitening) -> Fit {
     let from = start(vec![], vec![nominal], &[0.0; 2]);
     // The prior would hold the factor back.
     let weights = FitOptions {
-        nominal_prior: 1.0,
+        nominal_std: Some(1.0),
         ..FitOptions::white(1)
     };
     fit(&problem, &from, &weights).unwrap()

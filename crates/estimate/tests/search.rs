@@ -7,7 +7,7 @@ mod support;
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
-use simgap_estimate::{Fit, Start, FitOptions, fit, fit_initial_states, linearise_at, score};
+use simgap_estimate::{Fit, FitOptions, Start, fit, fit_initial_states, linearise_at, score};
 use simgap_model::Location;
 use support::{
     OSCILLATOR, between, candidate, drive, model, noisy, placed, problem, scale, start, truth,
@@ -196,12 +196,7 @@ fn verify_the_same_fit_comes_out_to_the_last_bit() {
         let effects = vec![placed("coulomb_friction", place(), &[0.5])];
         let nominal = vec![placed("stiffness_error", place(), &[1.0])];
         let from = start(effects, nominal, &[0.0; 2]);
-        fit(
-            &problem(&model, run.clone()),
-            &from,
-            &FitOptions::white(1),
-        )
-        .unwrap()
+        fit(&problem(&model, run.clone()), &from, &FitOptions::white(1)).unwrap()
     };
     let (a, b) = (once(), once());
     assert_eq!(a.objective.to_bits(), b.objective.to_bits());

@@ -6,7 +6,9 @@ mod support;
 use std::f64::consts::TAU;
 
 use simgap_effects::SiteScale;
-use simgap_estimate::{Start, FitOptions, fit, fit_initial_states, linearise_at, score, score_shapes};
+use simgap_estimate::{
+    FitOptions, Start, fit, fit_initial_states, linearise_at, score, score_shapes,
+};
 use simgap_model::{Location, Model};
 use simgap_simulate::Run;
 use support::{

@@ -46,7 +46,11 @@ impl CandidateModel {
     /// The key of the set without its i-th effect.
     #[must_use]
     pub fn key_without(&self, index: usize) -> Vec<String> {
-        let others = self.effects().iter().enumerate().filter(|(i, _)| *i != index);
+        let others = self
+            .effects()
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i != index);
         let mut key: Vec<String> = others.map(|(_, placed)| name(placed)).collect();
         key.sort();
         key
@@ -66,7 +70,9 @@ impl CandidateModel {
     pub(crate) fn nominal_deviation(&self) -> f64 {
         let coordinates = self.fit.curvature.coordinates.iter();
         let nominal = coordinates.filter(|c| matches!(c.owner, Owner::Nominal(..)));
-        nominal.map(|c| 0.5 * ((c.value - 1.0) / c.prior_std).powi(2)).sum()
+        nominal
+            .map(|c| 0.5 * ((c.value - 1.0) / c.prior_std).powi(2))
+            .sum()
     }
 }
 

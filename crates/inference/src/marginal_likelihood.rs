@@ -47,7 +47,10 @@ pub(crate) fn log_marginal_likelihood(
         let scale = scale_at(&placed.at);
         scale.is_some_and(|scale| !placed.effect.has_support(&placed.values, &scale))
     };
-    if effects.iter().any(|placed| has_vanished(placed) || is_outside(placed)) {
+    if effects
+        .iter()
+        .any(|placed| has_vanished(placed) || is_outside(placed))
+    {
         return f64::NEG_INFINITY;
     }
     let priors: Option<Vec<Term>> = fit
@@ -142,8 +145,7 @@ fn integral(fit: &Fit, terms: &[Term]) -> Option<f64> {
     let regained: f64 = (0..count).map(|i| right[(i, 0)] * solved[(i, 0)]).sum();
     let squared: f64 = apart.iter().map(|d| d * d).sum();
     let log_weight: f64 = terms.iter().map(|term| term.log_weight).sum();
-    let value =
-        log_weight - fit.misfit - 0.5 * squared + 0.5 * regained - 0.5 * log_determinant;
+    let value = log_weight - fit.misfit - 0.5 * squared + 0.5 * regained - 0.5 * log_determinant;
     value.is_finite().then_some(value)
 }
 
@@ -213,7 +215,8 @@ mod tests {
         let mut sum = 0.0;
         for i in 0..steps {
             for j in 0..steps {
-                let at = [i, j].map(|k| reach * (2.0 * (f64::from(k) + 0.5) / f64::from(steps) - 1.0));
+                let at =
+                    [i, j].map(|k| reach * (2.0 * (f64::from(k) + 0.5) / f64::from(steps) - 1.0));
                 let step = [0, 1].map(|k| at[k] * local[k].slope);
                 let curved: f64 = [(0, 0), (0, 1), (1, 0), (1, 1)]
                     .iter()
@@ -224,14 +227,19 @@ mod tests {
                     // The fit balances the prior.
                     log -= (local[k].mean - local[k].coordinate) / local[k].std.powi(2) * at[k];
                     let u = (local[k].coordinate + at[k] - local[k].mean) / local[k].std;
-                    log += local[k].log_weight - 0.5 * u * u
+                    log += local[k].log_weight
+                        - 0.5 * u * u
                         - (local[k].std * std::f64::consts::TAU.sqrt()).ln();
                 }
                 sum += log.exp() * (2.0 * reach / f64::from(steps)).powi(2);
             }
         }
         let found = found(&values, hessian);
-        assert!((found - sum.ln()).abs() < 1e-3, "{found} instead of {}", sum.ln());
+        assert!(
+            (found - sum.ln()).abs() < 1e-3,
+            "{found} instead of {}",
+            sum.ln()
+        );
     }
 
     #[test]

@@ -97,7 +97,10 @@ pub fn model_posterior(
     };
     let sets = relevance.keep_relevant(search, pool)?;
     let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
-    let odds: Vec<f64> = sets.iter().map(|set| (set.log_posterior() - best).exp()).collect();
+    let odds: Vec<f64> = sets
+        .iter()
+        .map(|set| (set.log_posterior() - best).exp())
+        .collect();
     let all: f64 = odds.iter().sum();
     let mut posterior = ModelPosterior {
         probabilities: odds.iter().map(|odds| odds / all).collect(),
@@ -123,7 +126,9 @@ impl Relevance {
     /// Share of the gap that a set closes and another does not, in the channel that profits most.
     fn closes(&self, with: &CandidateModel, without: &CandidateModel) -> f64 {
         let channels = closed(with, without).zip(&self.gap);
-        channels.map(|(closed, gap)| closed.sqrt() / gap).fold(0.0, f64::max)
+        channels
+            .map(|(closed, gap)| closed.sqrt() / gap)
+            .fold(0.0, f64::max)
     }
 
     /// Whether what a set has beyond another is worth a name.
@@ -153,9 +158,9 @@ impl Relevance {
         let mut kept: Vec<CandidateModel> = vec![];
         let mut rest = std::collections::VecDeque::from(pool);
         while let Some(set) = rest.pop_front() {
-            let least = kept.first().map_or(f64::NEG_INFINITY, |best| {
-                best.log_posterior() - NEGLIGIBLE
-            });
+            let least = kept
+                .first()
+                .map_or(f64::NEG_INFINITY, |best| best.log_posterior() - NEGLIGIBLE);
             if set.log_posterior() < least {
                 kept.push(set);
                 kept.extend(rest);
@@ -171,7 +176,9 @@ impl Relevance {
                 };
                 // A law beyond a special case of it is held to the same.
                 simpler.extend(search.shrink(&set, i));
-                is_relevant &= simpler.iter().all(|other| self.is_relevant(search, &set, other));
+                is_relevant &= simpler
+                    .iter()
+                    .all(|other| self.is_relevant(search, &set, other));
                 for other in simpler {
                     let key = other.key();
                     if kept.iter().chain(&rest).all(|known| known.key() != key) {
@@ -199,7 +206,9 @@ fn closed<'a>(
 
 /// Puts a set where it belongs in a ranked list.
 fn insert(list: &mut std::collections::VecDeque<CandidateModel>, set: CandidateModel) {
-    let worse = list.iter().position(|other| other.log_posterior() < set.log_posterior());
+    let worse = list
+        .iter()
+        .position(|other| other.log_posterior() < set.log_posterior());
     list.insert(worse.unwrap_or(list.len()), set);
 }
 
@@ -219,9 +228,15 @@ fn effect(
         if log_odds < -INDISTINGUISHABLE || set.key().contains(&own_name) {
             continue;
         }
-        let new = set.effects().iter().filter(|placed| !key.contains(&name(placed)));
+        let new = set
+            .effects()
+            .iter()
+            .filter(|placed| !key.contains(&name(placed)));
         for placed in new {
-            if rivals.iter().all(|known| name(&known.placed) != name(placed)) {
+            if rivals
+                .iter()
+                .all(|known| name(&known.placed) != name(placed))
+            {
                 rivals.push(Rival {
                     placed: placed.clone(),
                     log_odds,
@@ -229,10 +244,14 @@ fn effect(
             }
         }
     }
-    let same = search.space.equivalents(best.effects(), index, &search.problem.model);
+    let same = search
+        .space
+        .equivalents(best.effects(), index, &search.problem.model);
     let is_one = |placed: &Placed| {
         name(placed) == own_name
-            || rivals.iter().any(|rival| name(&rival.placed) == name(placed))
+            || rivals
+                .iter()
+                .any(|rival| name(&rival.placed) == name(placed))
             || same.iter().any(|other| {
                 other.kind == placed.effect.kind() && same_place(&other.at, &placed.at)
             })
@@ -242,7 +261,9 @@ fn effect(
     EffectPosterior {
         placed: own.clone(),
         probability: posterior.sum(|set| set.effects().iter().any(is_one)),
-        worth: smaller.map_or(f64::INFINITY, |set| best.log_posterior() - set.log_posterior()),
+        worth: smaller.map_or(f64::INFINITY, |set| {
+            best.log_posterior() - set.log_posterior()
+        }),
         closes: smaller.map_or(1.0, |set| relevance.closes(best, set)),
         rivals,
         equivalents: same,

@@ -8,7 +8,9 @@
 //! have a place, n_i the number of its places. It is the probability of a set of independent effects: more candidates
 //! cost more, and a larger set costs more.
 
-use simgap_effects::{Effect, Equivalent, Family, Placed, SiteScale, equivalents_beside, same_place};
+use simgap_effects::{
+    Effect, Equivalent, Family, Placed, SiteScale, equivalents_beside, same_place,
+};
 use simgap_estimate::{Candidate, EstimateError, Fit, Problem};
 use simgap_model::{Location, Model};
 
@@ -98,7 +100,9 @@ impl ModelSpace {
     #[must_use]
     pub fn log_prior(&self, effects: &[Placed]) -> f64 {
         let all = self.total_weight();
-        let each = effects.iter().map(|placed| self.log_prior_of(placed.effect, all));
+        let each = effects
+            .iter()
+            .map(|placed| self.log_prior_of(placed.effect, all));
         each.sum::<f64>() - EXPECTED_EFFECTS
     }
 
@@ -118,7 +122,9 @@ impl ModelSpace {
 
     fn places(&self, kind: &str) -> usize {
         let candidates = self.candidates.iter();
-        candidates.filter(|(known, _)| known.effect.kind() == kind).count()
+        candidates
+            .filter(|(known, _)| known.effect.kind() == kind)
+            .count()
     }
 
     fn total_weight(&self) -> f64 {

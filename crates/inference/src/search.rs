@@ -81,7 +81,9 @@ impl<'a> Search<'a> {
         Search {
             problem: self.problem,
             options: self.options.clone(),
-            space: self.space.of_families(|family| family == simgap_effects::Family::NominalParameter),
+            space: self
+                .space
+                .of_families(|family| family == simgap_effects::Family::NominalParameter),
             nominal: NominalPrior::Stated(stated_std),
             budget: self.budget,
         }
@@ -112,11 +114,15 @@ impl<'a> Search<'a> {
         let again = pool.iter().enumerate().filter(|(i, set)| {
             let size = set.effects().len();
             let names: Vec<String> = set.effects().iter().map(name).collect();
-            let new = names.into_iter().filter(|name| seen.insert((size, name.clone())));
+            let new = names
+                .into_iter()
+                .filter(|name| seen.insert((size, name.clone())));
             new.count() > 0 || size == 0 || *i < REFITTED
         });
         let again: Vec<&CandidateModel> = again.map(|(_, set)| set).collect();
-        let fitted = again.par_iter().filter_map(|set| self.fit(&set.fit.estimate).ok());
+        let fitted = again
+            .par_iter()
+            .filter_map(|set| self.fit(&set.fit.estimate).ok());
         let mut fitted: Vec<CandidateModel> = fitted.collect();
         rank(&mut fitted);
         fitted
@@ -140,13 +146,17 @@ impl<'a> Search<'a> {
         let noise = noise_variance(&set.fit.discrepancy, &stepped);
         let floor = self.options.floor.iter().zip(self.problem.output_std());
         let channels = noise.iter().zip(floor);
-        channels.map(|(noise, (floor, std))| noise + (floor * std).powi(2)).collect()
+        channels
+            .map(|(noise, (floor, std))| noise + (floor * std).powi(2))
+            .collect()
     }
 
     /// Whether a set leaves nothing but noise.
     fn leaves_noise(&self, set: &CandidateModel) -> bool {
         let channels = set.fit.variance.iter().zip(self.noise_of(set));
-        channels.into_iter().all(|(left, noise)| *left < NOTHING_LEFT * noise)
+        channels
+            .into_iter()
+            .all(|(left, noise)| *left < NOTHING_LEFT * noise)
     }
 
     /// Sets of none to three effects, best first.
@@ -200,7 +210,9 @@ impl<'a> Search<'a> {
             step("single effects in stretches");
             // Where stretches cannot be simulated, nothing is found in them.
             let found = self.multiple_shooting(base).unwrap_or_default();
-            let leads = found.first().filter(|set| set.log_posterior() > pool[0].log_posterior());
+            let leads = found
+                .first()
+                .filter(|set| set.log_posterior() > pool[0].log_posterior());
             if let Some(best) = leads {
                 pool.extend(self.extend(best, FITTED[1])?);
             }

@@ -95,4 +95,12 @@ pub enum ModelError {
         /// Which matrix.
         matrix: &'static str,
     },
+    /// The search for rest under the loads did not end.
+    #[error(
+        "no rest under the loads was found in {steps} steps, needed is a model that can carry its loads"
+    )]
+    Rest {
+        /// Steps tried.
+        steps: usize,
+    },
 }

@@ -37,6 +37,8 @@
 //! # Ok::<(), simgap_model::ModelError>(())
 //! ```
 
+#[cfg(feature = "ndarray")]
+mod arrays;
 mod check;
 mod dense;
 mod error;
@@ -46,6 +48,8 @@ mod matrices;
 mod model;
 mod modes;
 mod parts;
+mod sensitivity;
+mod serial;
 mod travel;
 mod uncertainty;
 
@@ -59,4 +63,5 @@ pub use parts::{
     Damper, EffectEntry, GROUND, Input, InputKind, Load, Location, Mass, Output, OutputKind,
     Pendulum, Spring,
 };
+pub use sensitivity::{Parameter, PoleSensitivity, pole_sensitivities, receptance_sensitivity};
 pub use uncertainty::{DEFAULT_UNCERTAINTY, NominalQuantity};

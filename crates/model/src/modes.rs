@@ -8,20 +8,22 @@ use faer::{Mat, Side, c64};
 use crate::{ModelError, StructuralMatrices};
 
 /// Modes of the undamped structure, lowest first.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct UndampedModes {
     /// ω_r, rad/s; zero for a rigid-body mode.
     pub natural_freq_rad: Vec<f64>,
     /// ω_r / 2π, Hz.
     pub natural_freq_hz: Vec<f64>,
     /// Mode shapes as columns, mass-normalised (φᵀ M φ = 1), largest component positive. n × n.
+    #[serde(serialize_with = "crate::serial::rows")]
     pub mode_shape: Mat<f64>,
 }
 
 /// One mode of the damped structure.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct DampedMode {
     /// Eigenvalue λ, rad/s, with Im λ ≥ 0.
+    #[serde(serialize_with = "crate::serial::complex")]
     pub eigenvalue: c64,
     /// |λ| / 2π, Hz.
     pub natural_freq_hz: f64,
@@ -30,6 +32,7 @@ pub struct DampedMode {
     /// −Re λ / |λ|; one for an overdamped mode, zero for λ = 0.
     pub damping_ratio: f64,
     /// Complex shape of the displacements, largest component 1. Length n.
+    #[serde(serialize_with = "crate::serial::complex_list")]
     pub mode_shape: Vec<c64>,
 }
 
@@ -215,7 +218,7 @@ impl DampedMode {
 
 /// A in units of displacement and of velocity over ω = ‖M⁻¹K‖^½: the same eigenvalues and shapes of
 /// the displacements, with blocks of one size, which keeps the digits of a stiff structure.
-fn balanced(state: &Mat<f64>) -> Mat<f64> {
+pub(crate) fn balanced(state: &Mat<f64>) -> Mat<f64> {
     let n = state.nrows() / 2;
     let largest = (0..n * n)
         .map(|k| state[(n + k / n, k % n)].abs())

@@ -78,3 +78,16 @@ pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<f64, MoldEr
         })
     }
 }
+
+/// The value, if it is finite.
+pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, MoldError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(MoldError::Parameter {
+            name,
+            found: value,
+            needed: "finite",
+        })
+    }
+}

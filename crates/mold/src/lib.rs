@@ -3,8 +3,10 @@
 //! - [`OneDof`]: Eq. (1)-(3) with Table 1.
 //! - [`TwoDof`]: Eq. (4) with Table 5 as printed, and [`TwoDof::restored`], the same masses and k₁
 //!   with k_leaf and k₂ solved so that the modes lie where the paper wants them.
+//! - [`HeaveRoll`]: heave and roll on a left and a right cylinder; [`LockedCylinder`]: shut oil as a spring.
+//! - [`LeafSpring`], [`MoldOnLeaves`]: leaf springs as beams, in closed form and as condensed finite elements.
 //! - [`RebuiltRecord`]: the measured data is lost; these records follow the printed numbers and say
-//!   so. Each of the two readings of the 50 − f lines ([`Reading`]) can be built at any sample rate.
+//!   so ([`SweepRecord`] for a sweep). Each of the two readings of the 50 − f lines ([`Reading`]) can be built at any sample rate.
 //!
 //! Source of every published number: `park-mold`, through [`simgap_tables`].
 //!
@@ -17,19 +19,29 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod beam;
 mod error;
+mod heave_roll;
+mod leaves;
 mod noise;
+mod oil;
 mod one_dof;
 mod plan;
 mod rebuild;
 mod restored;
+mod sweep;
 mod two_dof;
 
+pub use beam::{BeamEnds, LeafSpring};
 pub use error::MoldError;
-pub use one_dof::{OneDof, STANDARD_GRAVITY};
+pub use heave_roll::{Cylinder, HeaveRoll};
+pub use leaves::{CondensedLeaf, MoldOnLeaves};
+pub use oil::LockedCylinder;
+pub use one_dof::{LEAF_CHANNEL, LeafEnd, OneDof, STANDARD_GRAVITY};
 pub use plan::{
     DISPLACEMENT_CHANNEL, Derivative, FORCE_CHANNEL, HARMONIC_SHARE, Reading, RebuildPlan,
     published_line_amplitude, published_plan,
 };
 pub use rebuild::{RebuiltRecord, rebuild};
+pub use sweep::{SweepPlan, SweepRecord, published_sweep, rebuild_sweep};
 pub use two_dof::TwoDof;

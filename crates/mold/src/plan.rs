@@ -18,6 +18,7 @@ pub const HARMONIC_SHARE: f64 = 0.01;
 
 /// Why the displacement shows a line at 50 − f when it is sampled at 100 Hz.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Reading {
     /// No such line.
     None,
@@ -38,6 +39,7 @@ pub enum Reading {
 
 /// How (3) of [`RebuildPlan`] takes its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Derivative {
     /// D = iω.
     Exact,
@@ -74,6 +76,7 @@ pub enum Derivative {
 /// | Δα | `stroke_force` | N | Table 3; its phase, that of the velocity, is **assumed** |
 /// | | `noise_rms` | m | **assumed**, none unless asked for |
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RebuildPlan {
     /// Excitation f, Hz.
     pub excitation_freq_hz: f64,

@@ -6,7 +6,7 @@ use crate::error::positive;
 use crate::{MoldError, TwoDof};
 
 impl TwoDof {
-    /// The same masses and k₁, with k_leaf and k₂ solved for two given modes.
+    /// The same masses, dampers and k₁, with k_leaf and k₂ solved for two given undamped modes.
     ///
     /// With λ = (2πf)² of the wanted modes, S = λ₁ + λ₂ and P = λ₁ λ₂, the trace and determinant
     /// of M⁻¹K give, for a = k₁ + k_leaf and b = k_leaf + k₂,
@@ -56,7 +56,7 @@ impl TwoDof {
             let leaf = a - k1;
             let support = m2 * (sum - a / m1) - leaf; // (1)
             if leaf > 0.0 && support > 0.0 {
-                return Self::new([m1, m2], [k1, leaf, support]);
+                return Self::new([m1, m2], [k1, leaf, support])?.with_damping(self.dampings());
             }
         }
         Err(none)

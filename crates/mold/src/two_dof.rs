@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use simgap_model::{FrfKind, GROUND, Mass, Model, Spring, frequency_response, undamped_modes};
+use simgap_model::{
+    Damper, FrfKind, GROUND, Mass, Model, Spring, frequency_response, undamped_modes,
+};
 
 use crate::MoldError;
 use crate::error::{not_negative, positive};
@@ -11,8 +13,8 @@ use crate::one_dof::{displacement_output, pressure_input};
 /// Mold m₁ and support m₂ with two degrees of freedom,
 ///
 /// ```text
-/// [ m₁  0  ] { ÿ₁ }   [ k₁ + k_leaf    −k_leaf    ] { y₁ }   { F }
-/// [ 0   m₂ ] { ÿ₂ } + [ −k_leaf      k_leaf + k₂  ] { y₂ } = { 0 }         (4)
+/// [ m₁  0  ] { ÿ₁ }   [ c₁ + c_leaf   −c_leaf     ] { ẏ₁ }   [ k₁ + k_leaf   −k_leaf     ] { y₁ }   { F }
+/// [ 0   m₂ ] { ÿ₂ } + [ −c_leaf       c_leaf + c₃ ] { ẏ₂ } + [ −k_leaf       k_leaf + k₂ ] { y₂ } = { 0 }   (4)
 /// ```
 ///
 /// | symbol | method | unit | published |
@@ -22,8 +24,10 @@ use crate::one_dof::{displacement_output, pressure_input};
 /// | k_leaf | [`leaf_stiffness`](Self::leaf_stiffness), mold to support | N/m | Table 5 |
 /// | k₂ | [`support_stiffness`](Self::support_stiffness), support to ground | N/m | Table 5 |
 ///
+/// | c₁, c_leaf, c₃ | [`dampings`](Self::dampings), beside the springs | N s/m | not printed |
+///
 /// k₃ of Eq. (4) and k₂ of Table 5 are the same spring. Eq. (4) names dampers but no value is
-/// printed: **no damping is assumed**. Weight is left out; Eq. (4) has none. Valid for positive
+/// printed: none is assumed until [`with_damping`](Self::with_damping) sets them. Weight is left out; Eq. (4) has none. Valid for positive
 /// masses and stiffnesses (k₁, k_leaf, k₂ may be zero one at a time).
 ///
 /// Reference: `park-mold`, Eq. (4) and Table 5.
@@ -35,12 +39,14 @@ use crate::one_dof::{displacement_output, pressure_input};
 /// # Ok::<(), simgap_mold::MoldError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TwoDof {
     mold_mass_kg: f64,
     support_mass_kg: f64,
     mold_stiffness: f64,
     leaf_stiffness: f64,
     support_stiffness: f64,
+    dampings: [f64; 3],
 }
 
 impl TwoDof {
@@ -55,7 +61,33 @@ impl TwoDof {
             mold_stiffness: not_negative("k1", stiffnesses[0])?,
             leaf_stiffness: not_negative("k_leaf", stiffnesses[1])?,
             support_stiffness: not_negative("k2", stiffnesses[2])?,
+            dampings: [0.0; 3],
         })
+    }
+
+    /// The same with dampers `[c₁, c_leaf, c₃]`, N s/m.
+    ///
+    /// ```
+    /// let mold = simgap_mold::TwoDof::published(1.0)?.with_damping([2.0e4, 1.0e3, 5.0e3])?;
+    /// let modes = simgap_model::damped_modes(&mold.model()?.matrices()?)?;
+    /// assert!(modes.iter().all(|mode| mode.damping_ratio > 0.0));
+    /// # Ok::<(), simgap_mold::MoldError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MoldError::Parameter`] for a negative damping.
+    pub fn with_damping(mut self, dampings: [f64; 3]) -> Result<Self, MoldError> {
+        for (name, value) in ["c1", "c_leaf", "c3"].into_iter().zip(dampings) {
+            not_negative(name, value)?;
+        }
+        self.dampings = dampings;
+        Ok(self)
+    }
+
+    /// c₁, c_leaf and c₃, N s/m.
+    #[must_use]
+    pub fn dampings(&self) -> [f64; 3] {
+        self.dampings
     }
 
     /// The printed values for one excitation, 1 to 6 Hz.
@@ -114,7 +146,7 @@ impl TwoDof {
         self.support_stiffness
     }
 
-    /// Natural frequencies of the coupled system, lower and upper, Hz.
+    /// Undamped natural frequencies of the coupled system, lower and upper, Hz.
     ///
     /// # Errors
     /// [`MoldError::Model`] if the eigenvalues are not found.
@@ -166,13 +198,33 @@ impl TwoDof {
             stiffness,
             uncertainty: None,
         };
+        let members = [
+            ["k1", "c1", &mold, &ground],
+            ["k_leaf", "c_leaf", &mold, &support],
+            ["k2", "c3", &support, &ground],
+        ];
+        let stiffnesses = [
+            self.mold_stiffness,
+            self.leaf_stiffness,
+            self.support_stiffness,
+        ];
+        let dampers = members.iter().zip(self.dampings);
         let model = Model {
             name: "mold-2dof".to_owned(),
-            springs: vec![
-                spring("k1", &mold, &ground, self.mold_stiffness),
-                spring("k_leaf", &mold, &support, self.leaf_stiffness),
-                spring("k2", &support, &ground, self.support_stiffness),
-            ],
+            dampers: dampers
+                .filter(|(_, damping)| *damping > 0.0)
+                .map(|([_, name, a, b], damping)| Damper {
+                    name: (*name).to_owned(),
+                    between: [(*a).to_owned(), (*b).to_owned()],
+                    damping,
+                    uncertainty: None,
+                })
+                .collect(),
+            springs: members
+                .iter()
+                .zip(stiffnesses)
+                .map(|([name, _, a, b], stiffness)| spring(name, a, b, stiffness))
+                .collect(),
             masses: vec![
                 Mass {
                     name: mold,

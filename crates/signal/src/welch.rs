@@ -7,6 +7,7 @@ use crate::{Complex64, SignalError, Trend, Window, check};
 
 /// How a record is cut into segments.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct WelchOptions {
     /// Samples of a segment; the bins are fs / `segment_len` apart.
     pub segment_len: usize,

@@ -110,9 +110,15 @@ impl Run {
             time_step_s: stride as f64 * self.time_step_s,
             len: self.len.div_ceil(stride),
             inputs: self.inputs.iter().map(|input| thin(input)).collect(),
-            measured: self.measured.iter().map(|m| m.as_deref().map(thin)).collect(),
+            measured: self
+                .measured
+                .iter()
+                .map(|m| m.as_deref().map(thin))
+                .collect(),
             mended: Mended {
-                filled: filled.map(|mask| mask.iter().copied().step_by(stride).collect()).collect(),
+                filled: filled
+                    .map(|mask| mask.iter().copied().step_by(stride).collect())
+                    .collect(),
                 ..self.mended.clone()
             },
             ..self.clone()

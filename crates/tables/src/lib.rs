@@ -1,7 +1,7 @@
 //! The paper's Tables 1-5 as typed data with provenance; nothing computed.
 //!
 //! The numbers of Y. H. Park's mold oscillator paper (key: `park-mold`) live in
-//! `fixtures/paper/*.toml`, one line per printed number. They are embedded at build time and read
+//! `crates/tables/fixtures/*.toml`, one line per printed number. They are embedded at build time and read
 //! through typed accessors. Each number keeps three things: the string as printed, its value, and
 //! where it stands in the paper.
 //!
@@ -31,4 +31,4 @@ pub use paper::{
     table2, table3, table4, table5,
 };
 pub use printed::{HarmonicList, PrintedValue, Source, Unit};
-pub use stated::{StatedValue, StatedValues, stated_values};
+pub use stated::{StatedLines, StatedValue, StatedValues, stated_values};

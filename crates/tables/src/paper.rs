@@ -3,11 +3,11 @@
 use crate::raw::Cells;
 use crate::{HarmonicList, PrintedValue, TableError};
 
-pub(crate) const TABLE1: &str = include_str!("../../../fixtures/paper/table1.toml");
-pub(crate) const TABLE2: &str = include_str!("../../../fixtures/paper/table2.toml");
-pub(crate) const TABLE3: &str = include_str!("../../../fixtures/paper/table3.toml");
-pub(crate) const TABLE4: &str = include_str!("../../../fixtures/paper/table4.toml");
-pub(crate) const TABLE5: &str = include_str!("../../../fixtures/paper/table5.toml");
+pub(crate) const TABLE1: &str = include_str!("../fixtures/table1.toml");
+pub(crate) const TABLE2: &str = include_str!("../fixtures/table2.toml");
+pub(crate) const TABLE3: &str = include_str!("../fixtures/table3.toml");
+pub(crate) const TABLE4: &str = include_str!("../fixtures/table4.toml");
+pub(crate) const TABLE5: &str = include_str!("../fixtures/table5.toml");
 
 /// Table 1, mold oscillator configuration.
 #[derive(Debug, Clone, PartialEq)]

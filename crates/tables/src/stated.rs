@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use crate::{PrintedValue, Source, TableError, Unit};
 
-pub(crate) const STATED: &str = include_str!("../../../fixtures/paper/stated.toml");
+pub(crate) const STATED: &str = include_str!("../fixtures/stated.toml");
 const FILE: &str = "stated.toml";
 const SCHEMA: &str = "simgap-paper-stated/1";
 
@@ -34,6 +34,20 @@ pub struct StatedValue {
     pub value: PrintedValue,
 }
 
+/// The two lines of the 2-DOF model that section 3.2 states for one excitation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StatedLines {
+    /// Excitation, Hz.
+    pub excitation_hz: f64,
+    /// Lower line, 50 − f.
+    pub lower: PrintedValue,
+    /// Upper line, 50 + f.
+    pub upper: PrintedValue,
+}
+
+/// Excitations for which section 3.2 states lines, Hz.
+const LINES_OF: [u8; 6] = [1, 2, 3, 4, 5, 6];
+
 /// Values the text states. The fields are those other crates use; [`Self::all`] has every one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StatedValues {
@@ -57,6 +71,8 @@ pub struct StatedValues {
     pub torsional_mode: PrintedValue,
     /// Leaf-spring modes of the finite element model, near 47 Hz.
     pub leaf_modes: PrintedValue,
+    /// Lines of the 2-DOF model, for 1 to 6 Hz (Fig. 15 and its text).
+    pub lines: Vec<StatedLines>,
     all: Vec<StatedValue>,
 }
 
@@ -102,7 +118,15 @@ impl StatedValues {
                 }),
             }
         };
+        let lines = LINES_OF.iter().map(|hz| {
+            Ok(StatedLines {
+                excitation_hz: f64::from(*hz),
+                lower: find(&format!("lower_line_{hz}hz"))?,
+                upper: find(&format!("upper_line_{hz}hz"))?,
+            })
+        });
         Ok(Self {
+            lines: lines.collect::<Result<_, TableError>>()?,
             first_natural_freq: find("first_natural_freq")?,
             weight_equivalent: find("weight_equivalent")?,
             amplitude: find("amplitude")?,

@@ -13,7 +13,7 @@ fn verify_checksum_seal() {
 
 #[test]
 fn verify_checksum_sees_every_digit() {
-    let text = include_str!("../../../fixtures/paper/table4.toml");
+    let text = include_str!("../fixtures/table4.toml");
     let sealed = CHECKSUMS[3].1;
     assert_eq!(fixture_checksum(text), sealed);
     let digits = text
@@ -145,6 +145,13 @@ fn val_park_stated_values() {
     );
     assert_eq!(stated.image_base.si(), 50.0);
     assert_eq!(stated.all().len(), 27);
+    let lines: Vec<[f64; 3]> = stated
+        .lines
+        .iter()
+        .map(|row| [row.excitation_hz, row.lower.si(), row.upper.si()])
+        .collect();
+    let expected = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|f| [f, 50.0 - f, 50.0 + f]);
+    assert_eq!(lines, expected);
     assert_eq!(
         stated.first_natural_freq.source().to_string(),
         "section 3.1: First natural frequency in the pressure spectrum"
@@ -154,7 +161,7 @@ fn val_park_stated_values() {
 #[test]
 fn verify_errors_say_what_is_needed_and_where() {
     let message = |error: TableError| error.to_string();
-    let text = include_str!("../../../fixtures/paper/table1.toml");
+    let text = include_str!("../fixtures/table1.toml");
 
     let not_a_number = text.replace("8,287,639", "8.287.639");
     assert_eq!(

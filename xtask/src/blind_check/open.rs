@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use simgap_blind::{Answer, Named, Score, SealedCase, Signals, Status, Truth, score};
 use simgap_effects::Placed;
-use simgap_estimate::{Problem, FitOptions, fit_initial_states};
+use simgap_estimate::{FitOptions, Problem, fit_initial_states};
 use simgap_model::{Location, Model};
 use simgap_record::read_csv;
 use simgap_simulate::Run;

@@ -123,6 +123,7 @@ pub(super) fn displacement() -> Result<Vec<f64>, SimulateError> {
         time_step_s: 1.0 / FINE_HZ,
         len: time.len(),
         first_index: 0,
+        mended: simgap_simulate::Mended::default(),
         inputs: vec![time.iter().map(force).collect()],
         measured: vec![None],
     };

@@ -85,6 +85,12 @@ impl Context {
         self.time_step_s().recip().round()
     }
 
+    /// First and last excitation of Table 2, as printed, Hz.
+    pub(crate) fn stated_excitations(&self) -> [&str; 2] {
+        let rows = &self.table2.rows;
+        [rows.first(), rows.last()].map(|row| row.map_or("none", |row| row.excitation.printed()))
+    }
+
     /// Samples of the first second: past the start of every formula, and a whole number of
     /// periods of every excitation, so that lines stay orthogonal in what is left.
     pub(crate) fn first_second(&self) -> usize {

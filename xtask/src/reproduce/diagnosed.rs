@@ -45,9 +45,10 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     let mut blocks = vec![
         Block::Text(format!(
             "Records of the mold at {EXCITATION_HZ} Hz were rebuilt from the printed tables, once with every other sample \
-             of the displacement taken late and once with the mold vibrating at 50 ∓ f, at 100 Hz and at 500 Hz, each \
+             of the displacement taken late and once with the mold vibrating at 50 ∓ f, at {} Hz and at {FAST_RATE_HZ} Hz, each \
              with {} µm of noise (assumed). The diagnosis was given the 1-DOF model of Table 1 with the weight of the mold, two records to learn \
              from and one to judge by, all without a label. What it said:",
+            context.sample_rate_hz(),
             1e6 * NOISE_M
         )),
         Block::Table(answers(&cases)),
@@ -58,13 +59,20 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
         ("diagnosed-100hz", context.sample_rate_hz()),
         ("diagnosed-500hz", FAST_RATE_HZ),
     ] {
-        blocks.push(picture(stem, rate_hz, &cases)?);
+        blocks.push(picture(
+            stem,
+            rate_hz,
+            context.stated.image_base.si(),
+            &cases,
+        )?);
     }
     Ok(Page {
         stem: "diagnosed",
         title: "The paper's gap, diagnosed".to_owned(),
-        summary: "both readings given to the diagnosis without a label, at 100 Hz and at 500 Hz"
-            .to_owned(),
+        summary: format!(
+            "both readings given to the diagnosis without a label, at {} Hz and at {FAST_RATE_HZ} Hz",
+            context.sample_rate_hz()
+        ),
         blocks,
     })
 }
@@ -104,11 +112,11 @@ fn story(cases: &[Case]) -> Result<String, ReproduceError> {
         .ok_or(ReproduceError::Story("an experiment would tell them apart"))?
         .trim_end_matches('.');
     Ok(format!(
-        "At 100 Hz it gives one answer under both truths, the reading with the fewest numbers, and says that a tone in the \
+        "At the paper's rate it gives one answer under both truths, the reading with the fewest numbers, and says that a tone in the \
          cable and a force on the mold fit as well: *the published data cannot tell them apart*. The experiment that it asks \
-         for: *{wanted}*. At 500 Hz the two readings part. An alternation moves to 250 − f. The vibration stays at \
-         47 and 53 Hz, and what is named then ticks at those frequencies or at 50 Hz and never alternates from sample to \
-         sample; with one displacement measured and no input near 50 Hz, whether it comes through the support, the mold or \
+         for: *{wanted}*. At {FAST_RATE_HZ} Hz the two readings part. An alternation moves to half the sample rate less f. The \
+         vibration stays at 50 ∓ f, and what is named then ticks at those frequencies or at their middle and never alternates \
+         from sample to sample; with one displacement measured and no input near 50 Hz, whether it comes through the support, the mold or \
          the cable is left open.\n\n\
          The rest of the gap, the force of Table 3, is taken up at this one operating point by damping, mass and stiffness \
          estimated anew."
@@ -227,7 +235,12 @@ fn sizes(cases: &[Case]) -> Table {
 }
 
 /// Spectrum of what the nominal model leaves of the record to judge by, under both readings.
-fn picture(stem: &'static str, rate_hz: f64, cases: &[Case]) -> Result<Block, ReproduceError> {
+fn picture(
+    stem: &'static str,
+    rate_hz: f64,
+    base_hz: f64,
+    cases: &[Case],
+) -> Result<Block, ReproduceError> {
     let mut chart = LineChart::new(
         format!("What the 1-DOF model leaves of a record sampled at {rate_hz} Hz"),
         "frequency [Hz]",
@@ -264,9 +277,17 @@ fn picture(stem: &'static str, rate_hz: f64, cases: &[Case]) -> Result<Block, Re
         });
     }
     let caption = if rate_hz == FAST_RATE_HZ {
-        "At 500 Hz the two part: 247 Hz, or 47 and 53 Hz"
+        format!(
+            "At {rate_hz} Hz the two part: {} Hz, or {} and {} Hz",
+            0.5 * rate_hz - EXCITATION_HZ,
+            base_hz - EXCITATION_HZ,
+            base_hz + EXCITATION_HZ
+        )
     } else {
-        "At 100 Hz both leave the excitation and one line at 47 Hz"
+        format!(
+            "At {rate_hz} Hz both leave the excitation and one line at {} Hz",
+            base_hz - EXCITATION_HZ
+        )
     };
-    Ok(Block::Figure(stem, caption.to_owned(), chart))
+    Ok(Block::Figure(stem, caption, chart))
 }

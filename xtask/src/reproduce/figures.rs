@@ -44,7 +44,7 @@ const FIGURES: [[&str; 3]; 16] = [
     [
         "3",
         "sweep, model and experiment differ",
-        "below, in kind, on rebuilt records",
+        "[the sweep](sweep.md), in kind; below, by excitation",
     ],
     [
         "4",
@@ -66,14 +66,22 @@ const FIGURES: [[&str; 3]; 16] = [
         "unknown force and its expression",
         "[Table 4](table4.md), in kind",
     ],
-    ["8", "design with leaf springs", "a drawing: not computable"],
+    [
+        "8",
+        "design with leaf springs",
+        "a drawing; leaf springs as beams in [the machine](machine.md)",
+    ],
     [
         "9",
         "natural frequencies of the finite element model",
-        "not computable: the model is not printed",
+        "[the machine](machine.md), in kind, for stated dimensions",
     ],
     ["10", "diagram of the two-mass model", "a drawing: Eq. (4)"],
-    ["11", "1-DOF model with the unknown force", "below, in kind"],
+    [
+        "11",
+        "1-DOF model with the unknown force",
+        "[the sweep](sweep.md), in kind; below, at 1 Hz",
+    ],
     [
         "12",
         "spectra of displacement and force",
@@ -92,7 +100,7 @@ const FIGURES: [[&str; 3]; 16] = [
     [
         "15",
         "spectrum of the two-mass model at 1 Hz",
-        "[Table 5](table5.md), in kind",
+        "[Table 5](table5.md), in kind, all six rows; [every line](peaks.md)",
     ],
     [
         "16",

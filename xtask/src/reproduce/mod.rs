@@ -3,7 +3,7 @@
 //! The measured data of the paper is lost. What is computed here follows from the printed tables,
 //! through records rebuilt from them, and every page says so. All pages are built in memory
 //! ([`generate`]); they are then written, or compared byte for byte with what is committed. The
-//! published numbers themselves (`fixtures/paper`) are read and never written.
+//! published numbers themselves (`crates/tables/fixtures`) are read and never written.
 
 mod claims;
 mod context;
@@ -12,15 +12,19 @@ mod differentiators;
 mod error;
 mod figures;
 mod files;
+mod machine;
 mod number;
 mod page;
+mod peaks;
 mod readings;
 mod simulated;
 mod spectra;
+mod sweep;
 mod table1;
 mod table3;
 mod table4;
 mod table5;
+mod trial;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -30,7 +34,7 @@ use crate::generated;
 pub use context::Context;
 pub use error::ReproduceError;
 pub use files::Outcome;
-pub use number::{round_to, significant};
+pub use number::{range, round_to, significant};
 pub use page::{Block, Cell, Comparison, Page, Table, Verdict};
 
 /// Arguments of `reproduce-paper`.
@@ -108,10 +112,13 @@ pub fn pages() -> Result<Vec<Page>, ReproduceError> {
         table3::page(&context)?,
         table4::page(&context)?,
         table5::page(&context)?,
+        peaks::page(&context)?,
         readings::page(&context)?,
         diagnosed::page(&context)?,
         differentiators::page(&context)?,
         figures::page(&context)?,
+        machine::page(&context)?,
+        sweep::page(&context)?,
     ];
     pages.push(claims::page(&context)?);
     Ok(pages)

@@ -32,3 +32,16 @@ pub fn significant(value: f64, digits: usize) -> String {
     let decimals = (digits as f64 - 1.0 - exponent).max(0.0) as usize;
     format!("{rounded:.decimals$}")
 }
+
+/// The least and the largest of some values, "a to b"; one number where both are shown alike.
+#[must_use]
+pub fn range(values: &[f64], digits: usize) -> String {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (least, most) = (significant(least, digits), significant(most, digits));
+    if least == most {
+        least
+    } else {
+        format!("{least} to {most}")
+    }
+}

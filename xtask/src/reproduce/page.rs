@@ -52,6 +52,14 @@ pub struct Comparison {
     pub tolerance: f64,
 }
 
+/// Half a unit of the last digit of a printed number.
+pub(crate) fn print_resolution(printed: &str) -> f64 {
+    let decimals = printed
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    0.5 * 10_f64.powi(-i32::try_from(decimals).unwrap_or(0))
+}
+
 impl Comparison {
     /// Ours less published.
     #[must_use]
@@ -62,11 +70,7 @@ impl Comparison {
     /// Half a unit of the last digit printed.
     #[must_use]
     pub fn print_resolution(&self) -> f64 {
-        let digits = self.printed.replace(',', "");
-        let decimals = digits
-            .split_once('.')
-            .map_or(0, |(_, decimals)| decimals.len());
-        0.5 * 10_f64.powi(-i32::try_from(decimals).unwrap_or(0))
+        print_resolution(&self.printed)
     }
 
     /// Reproduced to the digits printed, within the tolerance, or not.
@@ -286,12 +290,22 @@ impl Page {
                 _ => None,
             })
             .collect();
+        let statements: Vec<&str> = self
+            .blocks
+            .iter()
+            .filter_map(|block| match block {
+                Block::Text(text) => Some(text.as_str()),
+                Block::Figure(_, caption, _) => Some(caption.as_str()),
+                Block::Table(_) => None,
+            })
+            .collect();
         json!({
             "schema": "simgap-reproduction/1",
             "page": self.stem,
             "title": self.title,
             "data": REBUILT,
             "tables": tables,
+            "statements": statements,
         })
     }
 
@@ -337,7 +351,7 @@ pub(crate) fn index(pages: &[Page]) -> String {
          self-excitation of supporting system* (`park-mold`). `cargo xtask reproduce-paper` writes \
          these pages and the same tables as text and JSON in `fixtures/reproduction/`; with `--check` \
          it compares them byte for byte with what is committed. The published numbers are in \
-         `fixtures/paper/` and no tool writes them.\n\n\
+         `crates/tables/fixtures/` and no tool writes them.\n\n\
          A published number is *reproduced* when ours agrees to the digits printed, *within \
          tolerance* when it agrees within the tolerance stated beside it and explained on the page, \
          and *not reproducible* when it does not follow from what is printed.\n\n\

@@ -1,161 +1,297 @@
-//! The two readings of the lines at 50 − f, side by side.
+//! The readings of the lines at 50 − f, side by side.
 
 use simgap_mold::{DISPLACEMENT_CHANNEL, Reading, published_line_amplitude};
-use simgap_report::chart::{LineChart, Role, Scale, Series};
+use simgap_report::chart::{LineChart, Mark, Role, Scale, Series};
 use simgap_signal::lines::fit_lines;
 
 use super::context::{EXCITATIONS_HZ, FAST_RATE_HZ, samples};
+use super::number::range;
 use super::spectra::channel_spectrum;
-use super::table4::beat_of;
-use super::table5::{models, one_dof_force};
+use super::trial::{FROM_REST, GAIN, LINE, TIMING, Trial, named, trials};
 use super::{Block, Cell, Context, Page, ReproduceError, Table, significant};
 
 /// Lines weaker than this are printed as none, m: rounding and the second order of the timing
 /// error stay below.
 const NO_LINE_M: f64 = 2e-8;
 
+/// Mains where the author works (Asan, Republic of Korea), Hz; the paper does not print it.
+const MAINS_HZ: f64 = 60.0;
+
 pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
+    let tried = trials(context)?;
     let mut blocks = vec![
         Block::Text(format!(
-            "The displacement, sampled at 100 Hz, has a line at 50 − f. Two readings:\n\n\
-             1. **Alternating timing.** Every other sample of the displacement is taken τ = {} ms late, the others as \
-             early: y_n = y(nh + (−1)ⁿτ). The record gains (−1)ⁿ τ ẏ, a line at exactly f_s/2 − f of amplitude 2πf A τ. Nothing in \
-             the machine vibrates at 50 Hz.\n\
-             2. **Flexible support.** The mold itself vibrates at 50 − f and 50 + f; Eq. (4) is to have these modes, \
-             for each f anew.",
-            significant(1e3 * context.timing.value, 3)
+            "The displacement, sampled at {} Hz, has a line at 50 − f. Seven readings of it, and interpolation, each with \
+             **one number** for the six F0 of [Table 4](table4.md), through the same Park's formula and the same Eq. (3):",
+            context.sample_rate_hz()
         )),
-        Block::Table(amplitudes(context)?),
-        Block::Text(
-            "**What it costs.** One number gives all six F0 within 6.3 %. The flexible support needs one amplitude \
-             for each F0 (it fits by construction: no row is left to test it), and the twelve stiffnesses of Table 5 for \
-             twelve modes. As printed they miss the modes by up to 1.8 Hz; restored they hit them, again by \
-             construction. A machine whose two modes follow the excitation so that they stay symmetric about half the \
-             sample rate of the instrument would be a remarkable machine."
-                .to_owned(),
-        ),
-        Block::Table(cost(context)?),
+        Block::Table(fits(&tried)),
+        amplitude_figure(context, &tried)?,
+        Block::Text(amplitude_text(&tried)?),
+        Block::Table(predictions_by_reading()),
+        Block::Text(evidence_text(context)?),
+        Block::Table(forces(context)?),
         Block::Table(predictions(context)?),
-        Block::Text(
-            "**Which experiment decides.** At 100 Hz both readings give the same line at 50 − f, and so does a \
-             50 Hz carrier modulated by the mold's velocity (pick-up of the mains in the sensor; the same formula as the support's \
-             two lines): *the published \
-             data cannot decide*. Sampled at 500 Hz (250 Hz would do), the line moves to 250 − f if the sampling makes it, and stays, \
-             as a pair at 50 ∓ f, if the mold or a carrier does. A second sensor on its own converter, or a shift of the \
-             sample rate by 1 Hz, decides as well.\n\n\
-             **What the lost records might have said at 100 Hz.** Alternating timing, or a carrier modulated by the velocity, images \
-             *every* harmonic, to 50 − n f; two modes at 50 ∓ f do not (picture below, harmonics at their assumed height). Table 2 prints \
-             harmonics of the displacement and one high line only. That speaks against the timing unless the harmonics were low: \
-             an image is 2πnfτ of its harmonic, 0.4 % at n f = 1 Hz and 7 % at 18 Hz. No heights are printed, so it does not decide."
-                .to_owned(),
-        ),
+        Block::Text(experiment_text(context)),
     ];
     blocks.extend(pictures(context)?);
     Ok(Page {
         stem: "readings",
-        title: "Two readings of the lines at 50 − f".to_owned(),
-        summary:
-            "alternating sample timing against a flexible support: cost, predictions, experiment"
-                .to_owned(),
+        title: "Readings of the lines at 50 − f".to_owned(),
+        summary: "seven readings, one number each: fit, further predictions, what is printed for and against, experiment".to_owned(),
         blocks,
     })
 }
 
-fn amplitudes(context: &Context) -> Result<Table, ReproduceError> {
+fn fits(tried: &[Trial]) -> Table {
+    let best = tried.iter().fold(f64::NEG_INFINITY, |best, trial| {
+        best.max(trial.log_likelihood)
+    });
     let mut table = Table::new(
-        "F0 of Table 4 under both readings, from rebuilt records at 100 Hz",
+        "One number for the six F0",
         &[
-            "f [Hz]",
-            "F0 published [N]",
-            "timing, one τ [N]",
-            "off",
-            "line of y, timing [µm]",
-            "support, F0 per row [N]",
-            "line of y, support [µm]",
+            "reading",
+            "number",
+            "value",
+            "R²",
+            "worst row [%]",
+            "log-likelihood, less the best",
         ],
     );
-    for row in &context.table4.rows {
-        let (freq, published) = (row.excitation.si(), row.amplitude.si());
-        let timing = beat_of(context, freq, context.timing_reading())?
-            .parameters
-            .amplitude;
-        let support = beat_of(context, freq, context.support_reading(freq)?)?
-            .parameters
-            .amplitude;
-        let omega = std::f64::consts::TAU * freq;
-        let line = omega * context.amplitude() * context.timing.value;
+    for trial in tried {
         table.rows.push(vec![
-            Cell::text(row.excitation.printed()),
-            Cell::text(row.amplitude.printed()),
-            Cell::Number(timing, 5),
-            Cell::text(format!("{:+.1} %", 1e2 * (timing / published - 1.0))),
+            Cell::text(trial.name),
+            Cell::text(trial.number),
+            Cell::Number(trial.value, 3),
+            Cell::Number(trial.r_squared, 3),
+            Cell::Number(1e2 * trial.worst_relative_error, 2),
+            Cell::Number(super::round_to(trial.log_likelihood - best, 2), 2),
+        ]);
+    }
+    table
+}
+
+/// The readings whose R² is positive.
+fn left_over(tried: &[Trial]) -> Vec<&Trial> {
+    tried.iter().filter(|trial| trial.r_squared > 0.9).collect()
+}
+
+fn amplitude_text(tried: &[Trial]) -> Result<String, ReproduceError> {
+    let (timing, line, rest) = (
+        named(tried, TIMING)?,
+        named(tried, LINE)?,
+        named(tried, FROM_REST)?,
+    );
+    let open = left_over(tried);
+    let all: Vec<f64> = open.iter().map(|trial| trial.r_squared).collect();
+    let likelihoods: Vec<f64> = open.iter().map(|trial| trial.log_likelihood).collect();
+    let spread = likelihoods
+        .iter()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max)
+        - likelihoods.iter().copied().fold(f64::INFINITY, f64::min);
+    Ok(format!(
+        "**The heights do not decide.** {} of the {} laws fit with R² = {}, and their log-likelihoods lie within {} of one another: sampling \
+         (R² = {}), a straight line (R² = {}) and even the two-mass model from rest (R² = {}, with one scale of {} for all \
+         rows: the support needs one number too, not an amplitude for each row). What is flat in f is excluded (R² = {}), and so is \
+         interpolation, which grows as f².",
+        open.len(),
+        tried.len(),
+        range(&all, 3),
+        significant(spread, 2),
+        significant(timing.r_squared, 3),
+        significant(line.r_squared, 3),
+        significant(rest.r_squared, 3),
+        significant(rest.value, 3),
+        significant(named(tried, GAIN)?.r_squared, 2),
+    ))
+}
+
+/// What each reading says beyond the heights: the line at a faster rate, the images of harmonics, the pressure, and
+/// what speaks against it in print.
+const BEYOND: [[&str; 5]; 8] = [
+    [
+        TIMING,
+        "moves to f_s/2 − f",
+        "50 − n f of every harmonic",
+        "no line",
+        "Table 2 prints one high line only (unless the harmonics are low)",
+    ],
+    [
+        "a tone at 50 Hz times the velocity, in the cable",
+        "stays, as a pair at 50 ∓ f",
+        "50 ∓ n f of every harmonic",
+        "no line",
+        "as above; and mains is not 50 Hz there (below)",
+    ],
+    [
+        "a set point held for 20 ms, through the servo",
+        "stays, as a pair at 50 ∓ f",
+        "50 ∓ n f of harmonics of the set point",
+        "the force that moves the mass",
+        "no line in the pressure (below)",
+    ],
+    [
+        "a real vibration at 50 ∓ f, forces as f",
+        "stays, as a pair at 50 ∓ f",
+        "none needed",
+        "the force that moves the mass",
+        "no line in the pressure (below); a linear support makes none in steady state",
+    ],
+    [
+        LINE,
+        "says nothing",
+        "says nothing",
+        "says nothing",
+        "a description, not a cause",
+    ],
+    [
+        FROM_REST,
+        "stays, at the modes of each row",
+        "none",
+        "no line",
+        "modes off as printed ([Table 5](table5.md)); dies away with any damping; the stiffnesses must follow f",
+    ],
+    [
+        GAIN,
+        "f_s/2 − f, or 50 ∓ f",
+        "50 − n f of every harmonic",
+        "no line",
+        "the heights",
+    ],
+    [
+        "interpolation of every other sample",
+        "moves to f_s/2 − f",
+        "50 − n f, growing with n²",
+        "no line",
+        "the heights; and its size is no free number",
+    ],
+];
+
+fn predictions_by_reading() -> Table {
+    let mut table = Table::new(
+        "What else each reading says",
+        &[
+            "reading",
+            "line at a faster rate",
+            "images of harmonics",
+            "pressure",
+            "against it in print",
+        ],
+    );
+    for row in BEYOND {
+        table.rows.push(row.map(Cell::text).to_vec());
+    }
+    table
+}
+
+/// Force at 50 − f that moves the mass by the line of Table 4, N.
+fn line_force(context: &Context, freq: f64) -> Result<[f64; 2], ReproduceError> {
+    let line = published_line_amplitude(freq)?;
+    let omega = std::f64::consts::TAU * (context.stated.image_base.si() - freq);
+    Ok([line, context.mold.mass_kg() * omega * omega * line])
+}
+
+fn evidence_text(context: &Context) -> Result<String, ReproduceError> {
+    let (mut lines, mut forces, mut larger) = (vec![], vec![], 0);
+    for freq in EXCITATIONS_HZ {
+        let [line, force] = line_force(context, freq)?;
+        lines.push(1e6 * line);
+        forces.push(1e-3 * force);
+        larger += usize::from(force > super::table5::one_dof_force(context, freq)?);
+    }
+    let folded = context.sample_rate_hz() - MAINS_HZ;
+    Ok(format!(
+        "**What else is printed does decide some.**\n\n\
+         - *The pressure has no line.* A line of {} µm at 50 − f on {} t takes {} kN if the mold really moves (table below). \
+         Table 2 prints no high line in the pressure in any row, though the force would be larger than the fundamental of the pressure force itself in {} of the six rows. That speaks against every \
+         reading in which the cylinders shake the mold: the held set point and the real vibration.\n\
+         - *Mains.* Where the author works mains has {} Hz, not 50: its carrier would fold to {} ∓ f at {} Hz. Pick-up of \
+         the mains is a poor candidate; a carrier at exactly half the sample rate points at the instrument.\n\
+         - *A linear Eq. (4) in steady state* moves at f and at nothing else; its two modes ring from the start only and die away. \
+         A force at f leaves no line at 50 ∓ f ([claims](claims.md)).\n\
+         - *One high line.* Sampling images every harmonic of Table 2, to 50 − n f; Table 2 prints one. An image is 2πnfτ of its harmonic, {} % at \
+         {} Hz and {} % at 18 Hz. No heights are printed, so low harmonics are not excluded.\n\n\
+         Alternating sampling contradicts none of these, needs no second number, and has its line at exactly half the sample \
+         rate less f, as all seven rows of Table 2. That is the likeliest reading; it is not proved.",
+        range(&lines, 2),
+        context.stated.mold_mass.printed(),
+        range(&forces, 2),
+        larger,
+        MAINS_HZ,
+        folded,
+        context.sample_rate_hz(),
+        significant(
+            1e2 * std::f64::consts::TAU * EXCITATIONS_HZ[0] * context.timing.value,
+            1
+        ),
+        EXCITATIONS_HZ[0],
+        significant(1e2 * std::f64::consts::TAU * 18.0 * context.timing.value, 1),
+    ))
+}
+
+fn experiment_text(context: &Context) -> String {
+    format!(
+        "**Which experiment decides.** At {} Hz sampling and vibration give the same line at 50 − f: *the published data cannot decide* between \
+         them by the displacement alone. Sampled at {FAST_RATE_HZ} Hz (half of it would do), the line moves to half the sample rate less f if the sampling makes \
+         it, and stays, as a pair at 50 ∓ f, if the mold or a carrier does. A second sensor on its own converter, or a shift of the \
+         sample rate by 1 Hz, decides as well; a line in the pressure tells a real vibration from a carrier.",
+        context.sample_rate_hz()
+    )
+}
+
+fn forces(context: &Context) -> Result<Table, ReproduceError> {
+    let mut table = Table::new(
+        "If the mold really moved at 50 − f",
+        &[
+            "f [Hz]",
+            "line [Hz]",
+            "motion that F0 of Table 4 asks for [µm]",
+            "force on the moving mass [kN]",
+            "fundamental of the pressure force [kN]",
+        ],
+    );
+    for freq in EXCITATIONS_HZ {
+        let [line, force] = line_force(context, freq)?;
+        table.rows.push(vec![
+            Cell::Number(freq, 1),
+            Cell::Number(context.stated.image_base.si() - freq, 2),
             Cell::Number(1e6 * line, 3),
-            Cell::Number(support, 5),
-            Cell::Number(1e6 * published_line_amplitude(freq)?, 3),
+            Cell::Number(1e-3 * force, 3),
+            Cell::Number(1e-3 * super::table5::one_dof_force(context, freq)?, 3),
         ]);
     }
     Ok(table)
 }
 
-fn cost(context: &Context) -> Result<Table, ReproduceError> {
-    let mut worst_mode = 0.0_f64;
-    let mut ratio = [f64::INFINITY, 0.0];
-    for freq in EXCITATIONS_HZ {
-        let printed = models(context, freq)?[0];
-        let base = context.stated.image_base.si();
-        let [lower, upper] = printed.modes_hz()?;
-        worst_mode = worst_mode
-            .max((lower - base + freq).abs())
-            .max((upper - base - freq).abs());
-        let force = printed.force_amplitude(context.amplitude(), freq)?;
-        let times = force / one_dof_force(context, freq)?;
-        ratio = [ratio[0].min(times), ratio[1].max(times)];
+fn amplitude_figure(context: &Context, tried: &[Trial]) -> Result<Block, ReproduceError> {
+    let freqs = EXCITATIONS_HZ.to_vec();
+    let kilo = |values: &[f64]| values.iter().map(|v| 1e-3 * v).collect::<Vec<_>>();
+    let mut chart = LineChart::new("F0 of the beat part", "excitation [Hz]", "force [kN]");
+    for (name, label, role) in [
+        (TIMING, "sampling", Role::Corrected),
+        (LINE, "proportional to f", Role::Recalibrated),
+        (FROM_REST, "Eq. (4) from rest", Role::Other(0)),
+        (GAIN, "gain", Role::Nominal),
+    ] {
+        let predicted = kilo(&named(tried, name)?.predicted);
+        chart = chart.with(Series::new(label, role, freqs.clone(), predicted));
     }
-    let mut table = Table::new(
-        "Cost of the two readings",
-        &["", "alternating timing", "flexible support"],
+    let published: Vec<f64> = context
+        .table4
+        .rows
+        .iter()
+        .map(|row| row.amplitude.si())
+        .collect();
+    chart = chart.with(
+        Series::new("Table 4", Role::Measured, freqs, kilo(&published)).with_mark(Mark::Points),
     );
-    let mut row = |what: &str, timing: String, support: String| {
-        table.rows.push(vec![
-            Cell::text(what),
-            Cell::text(timing),
-            Cell::text(support),
-        ]);
-    };
-    row(
-        "numbers for the six F0",
-        "1 (τ)".into(),
-        "6 (one each)".into(),
-    );
-    row(
-        "numbers for the frequencies",
-        "0 (f_s/2 − f)".into(),
-        "12 (Table 5)".into(),
-    );
-    row(
-        "worst F0",
-        format!(
-            "{} % off",
-            significant(1e2 * context.timing.worst_relative_error, 2)
-        ),
-        "fitted".into(),
-    );
-    row(
-        "worst frequency",
-        "exact".into(),
-        format!("{} Hz off as printed", significant(worst_mode, 3)),
-    );
-    row(
-        "force for 2 mm, over that of the 1-DOF model",
-        "1".into(),
-        format!(
-            "{} to {}",
-            significant(ratio[0], 3),
-            significant(ratio[1], 3)
-        ),
-    );
-    row("line in the pressure", "none".into(), "none".into());
-    Ok(table)
+    (chart.x_range, chart.y_range) = (Some([0.5, 6.5]), Some([0.0, 450.0]));
+    Ok(Block::Figure(
+        "readings-heights",
+        "The six F0, and what one number makes of them under four readings".to_owned(),
+        chart,
+    ))
 }
 
 /// Amplitudes (m) of the displacement at 50 − f, 50 + f and f_s/2 − f, fitted together with the
@@ -274,12 +410,21 @@ fn pictures(context: &Context) -> Result<Vec<Block>, ReproduceError> {
         ))
         .with(Series::new("alternating timing", Role::Corrected, freqs_timing, timing).dashed());
         chart.y_scale = Scale::Log;
+        let base = context.stated.image_base.si();
         let caption = if rate == FAST_RATE_HZ {
-            "At 500 Hz: 247 Hz if the sampling makes the line, 47 and 53 Hz if the mold does"
+            format!(
+                "At {rate} Hz: {} Hz if the sampling makes the line, {} and {} Hz if the mold does",
+                0.5 * rate - freq,
+                base - freq,
+                base + freq
+            )
         } else {
-            "At 100 Hz: one line at 47 Hz under both readings"
+            format!(
+                "At {rate} Hz: one line at {} Hz under both readings",
+                base - freq
+            )
         };
-        blocks.push(Block::Figure(stem, caption.to_owned(), chart));
+        blocks.push(Block::Figure(stem, caption, chart));
     }
     Ok(blocks)
 }

@@ -3,20 +3,21 @@
 use std::f64::consts::TAU;
 
 use simgap_integrate::{Excitation, Method, Problem, TimeGrid, simulate};
+use simgap_model::undamped_modes;
 use simgap_mold::{OneDof, STANDARD_GRAVITY, TwoDof};
 
 use super::ReproduceError;
 
-/// Displacement of the mold after a force step from rest.
-pub(crate) fn step_response(
+/// Displacement of the mold from rest under a force that depends on time.
+pub(crate) fn response(
     mold: &OneDof,
-    force_n: f64,
+    force_n: &dyn Fn(f64) -> f64,
     time_step_s: f64,
     count: usize,
 ) -> Result<Vec<f64>, ReproduceError> {
-    let step = |_: f64, force: &mut [f64]| force[0] = force_n;
+    let drive = |time: f64, force: &mut [f64]| force[0] = force_n(time);
     let problem =
-        Problem::new(&mold.model()?.matrices()?)?.with_excitation(Excitation::Function(&step))?;
+        Problem::new(&mold.model()?.matrices()?)?.with_excitation(Excitation::Function(&drive))?;
     let solution = simulate(
         &problem,
         &TimeGrid::new(0.0, time_step_s, count)?,
@@ -78,6 +79,9 @@ pub(crate) fn two_mass_motion(
     count: usize,
 ) -> Result<TwoMassMotion, ReproduceError> {
     let force_amplitude = mold.force_amplitude(amplitude, freq_hz)?;
+    if mold.dampings() == [0.0; 3] {
+        return undamped_motion(mold, force_amplitude, freq_hz, sample_rate_hz, count);
+    }
     let drive = |time: f64, force: &mut [f64]| {
         force[0] = force_amplitude * (TAU * freq_hz * time).sin();
         force[1] = 0.0;
@@ -98,4 +102,60 @@ pub(crate) fn two_mass_motion(
         support: every(1),
         force_amplitude,
     })
+}
+
+/// The same in closed form, for a model without damping,
+///
+/// ```text
+/// y = Σ_r φ_r φ_1r F (sin ωt − (ω/ω_r) sin ω_r t) / (ω_r² − ω²)
+/// ```
+fn undamped_motion(
+    mold: &TwoDof,
+    force_amplitude: f64,
+    freq_hz: f64,
+    sample_rate_hz: f64,
+    count: usize,
+) -> Result<TwoMassMotion, ReproduceError> {
+    let modes = undamped_modes(&mold.model()?.matrices()?)?;
+    let omega = TAU * freq_hz;
+    let time_s: Vec<f64> = (0..count).map(|n| n as f64 / sample_rate_hz).collect();
+    let every = |dof: usize| {
+        let at = |t: &f64| {
+            (0..2)
+                .map(|r| {
+                    let natural = modes.natural_freq_rad[r];
+                    let part = modes.mode_shape[(dof, r)] * modes.mode_shape[(0, r)];
+                    part * force_amplitude / (natural * natural - omega * omega)
+                        * ((omega * t).sin() - omega / natural * (natural * t).sin())
+                })
+                .sum()
+        };
+        time_s.iter().map(at).collect::<Vec<f64>>()
+    };
+    Ok(TwoMassMotion {
+        mold: every(0),
+        support: every(1),
+        time_s: time_s.clone(),
+        force_amplitude,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    /// The closed form is what Runge and Kutta's method gives with next to no damping.
+    #[test]
+    fn verify_the_closed_form() {
+        let mold = TwoDof::published(1.0).unwrap();
+        let bare = two_mass_motion(&mold, 2e-3, 1.0, 500.0, 500).unwrap();
+        let damped = mold.with_damping([1e-3, 0.0, 0.0]).unwrap();
+        let stepped = two_mass_motion(&damped, 2e-3, 1.0, 500.0, 500).unwrap();
+        for (ours, theirs) in bare.mold.iter().zip(&stepped.mold) {
+            // Four steps in a sample: 1e-5 of the ringing, 40 µm.
+            assert!((ours - theirs).abs() < 1e-9, "{ours} {theirs}");
+        }
+    }
 }

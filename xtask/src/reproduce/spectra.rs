@@ -5,7 +5,7 @@ use simgap_mold::{
     rebuild,
 };
 use simgap_report::chart::{LineChart, Mark, Role, Scale, Series};
-use simgap_signal::peaks::{PeakOptions, find_peaks};
+use simgap_signal::peaks::{Peak, PeakOptions, find_peaks};
 use simgap_signal::spectrum::{Spectrum, spectrum};
 use simgap_signal::{Trend, Window};
 use simgap_tables::LineRow;
@@ -21,8 +21,12 @@ const NOISE_M: f64 = 1e-7;
 /// this there is only rounding.
 const LEAST_FORCE_LINE_N: f64 = 1e-3;
 
-/// Frequencies of lines may be off by this, Hz: a tenth of a bin of 20 s.
-const LINE_TOLERANCE_HZ: f64 = 0.005;
+/// Length of the records, s.
+pub(crate) const DURATION_S: f64 = 20.0;
+
+/// Frequencies of lines may be off by this, Hz: a tenth of a bin, far above what noise does to a line
+/// (1e-5 Hz for the weakest one counted) and far below the distance of two lines.
+pub(crate) const LINE_TOLERANCE_HZ: f64 = 0.1 / DURATION_S;
 
 /// The record of one row of Table 2, with the one timing error of Table 4. Table 3 has no row for
 /// 7 Hz: there the mean a₀ and no stroke are assumed.
@@ -50,7 +54,7 @@ fn record(context: &Context, row: &LineRow) -> Result<RebuiltRecord, ReproduceEr
             time_step_s: context.time_step_s(),
         },
         sample_rate_hz: context.sample_rate_hz(),
-        duration_s: 20.0,
+        duration_s: DURATION_S,
         reading: context.timing_reading(),
         noise_rms: NOISE_M,
         seed: 2,
@@ -68,38 +72,49 @@ pub(crate) fn channel_spectrum(
     Ok(spectrum(&values, rate, Window::Hann, Trend::Mean)?)
 }
 
-/// Frequencies of the lines found, Hz.
+/// The lines found.
 fn lines(
     rebuilt: &RebuiltRecord,
     channel: &str,
     min_amplitude: f64,
-) -> Result<Vec<f64>, ReproduceError> {
+) -> Result<Vec<Peak>, ReproduceError> {
     let options = PeakOptions {
         min_amplitude,
         ..PeakOptions::default()
     };
-    let peaks = find_peaks(&channel_spectrum(rebuilt, channel)?, &options)?;
-    Ok(peaks.iter().map(|peak| peak.freq_hz).collect())
+    Ok(find_peaks(&channel_spectrum(rebuilt, channel)?, &options)?)
 }
 
 /// How many printed lines were found within the tolerance.
-fn found_of(printed: &[f64], found: &[f64]) -> usize {
-    let near = |line: &f64| {
-        found
-            .iter()
-            .any(|freq| (freq - line).abs() <= LINE_TOLERANCE_HZ)
-    };
-    printed.iter().filter(|line| near(line)).count()
+fn found_of(printed: &[f64], found: &[Peak]) -> usize {
+    let is_found = |line: &&f64| found.iter().any(|peak| near(peak, **line));
+    printed.iter().filter(is_found).count()
+}
+
+/// Whether a peak is a line.
+pub(crate) fn near(peak: &Peak, line_hz: f64) -> bool {
+    (peak.freq_hz - line_hz).abs() <= LINE_TOLERANCE_HZ
 }
 
 /// What was found in the record of one row.
-struct Found<'a> {
-    row: &'a LineRow,
-    pressure: Vec<f64>,
-    displacement: Vec<f64>,
+pub(crate) struct Found<'a> {
+    pub(crate) row: &'a LineRow,
+    pub(crate) pressure: Vec<Peak>,
+    pub(crate) displacement: Vec<Peak>,
 }
 
-fn find(context: &Context) -> Result<Vec<Found<'_>>, ReproduceError> {
+impl Found<'_> {
+    /// The lines printed for the displacement, the high one included, Hz.
+    pub(crate) fn displacement_lines(&self) -> Vec<f64> {
+        let high = self.row.displacement_high.as_ref();
+        let printed = self.row.displacement.lines_hz().iter().copied();
+        printed
+            .chain(high.map(simgap_tables::PrintedValue::si))
+            .collect()
+    }
+}
+
+pub(crate) fn find(context: &Context) -> Result<Vec<Found<'_>>, ReproduceError> {
     let of = |row| {
         let rebuilt = record(context, row)?;
         Ok(Found {
@@ -121,14 +136,14 @@ pub(crate) fn high_lines_as_printed(context: &Context) -> Result<bool, Reproduce
         let pressure = found
             .pressure
             .iter()
-            .all(|line| found_of(&[*line], printed) == 1);
+            .all(|peak| printed.iter().any(|line| near(peak, *line)));
         displacement && pressure && found.row.pressure_high.is_none()
     }))
 }
 
 fn high_line(found: &Found<'_>) -> Option<Comparison> {
     let line = found.row.displacement_high.as_ref()?;
-    let off = |freq: &f64| (freq - line.si()).abs();
+    let off = |peak: &Peak| (peak.freq_hz - line.si()).abs();
     let nearest = found
         .displacement
         .iter()
@@ -141,7 +156,7 @@ fn high_line(found: &Found<'_>) -> Option<Comparison> {
         unit: "Hz",
         printed: line.printed().to_owned(),
         published: line.si(),
-        ours: super::round_to(*nearest?, 5),
+        ours: super::round_to(nearest?.freq_hz, 5),
         tolerance: LINE_TOLERANCE_HZ,
     })
 }
@@ -157,12 +172,12 @@ fn line_table(found: &[Found<'_>]) -> Table {
             "further lines found [Hz]",
         ],
     );
-    for Found {
-        row,
-        pressure,
-        displacement,
-    } in found
-    {
+    for item in found {
+        let Found {
+            row,
+            pressure,
+            displacement,
+        } = item;
         for (channel, printed, found, high) in [
             ("pressure", &row.pressure, pressure, None),
             (
@@ -176,8 +191,8 @@ fn line_table(found: &[Found<'_>]) -> Table {
             expected.extend(high.map(simgap_tables::PrintedValue::si));
             let further: Vec<String> = found
                 .iter()
-                .filter(|freq| found_of(&[**freq], &expected) == 0)
-                .map(|freq| significant(*freq, 3))
+                .filter(|peak| !expected.iter().any(|line| near(peak, *line)))
+                .map(|peak| significant(peak.freq_hz, 3))
                 .collect();
             let published = match high {
                 Some(line) => format!("{} and {}", printed.printed(), line.printed()),
@@ -207,21 +222,29 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     let found = find(context)?;
     let high: Vec<Comparison> = found.iter().filter_map(high_line).collect();
     let mut blocks = vec![
-        Block::Text(
-            "The harmonics are in the rebuilt records because Table 2 lists them (their height, 1 % of \
+        Block::Text(format!(
+            "The harmonics are in the rebuilt records because Table 2 lists them (their height, {} % of \
              the fundamental over n², is assumed): that they are found says that the detection works. \
              The line at 50 − f was **not** put in as a line. It appears because every other sample \
              is taken late by the one τ of [Table 4](table4.md), and it appears in the displacement \
              only, as in Table 2, because the displacement only is sampled so. Had the clock common to \
              both channels alternated, the pressure would show the line as well: it does not.\n\n\
-             At the printed step of 0.01 s, 50 Hz is the Nyquist frequency, and 50 − f is the image of f \
+             At the printed step of {} s, {} Hz is the Nyquist frequency, and 50 − f is the image of f \
              about half the sample rate. The further lines are the images 50 − n f of the harmonics; \
              the paper prints 50 − f only, so that its harmonics are lower than assumed here, or its list is \
-             not complete. Tolerance: a tenth of a bin of 20 s, 0.005 Hz. A white noise of 0.1 µm on the \
-             displacement is assumed."
-                .to_owned(),
-        ),
-        Block::Table(Table::comparisons("Table 2, high lines of the displacement", &high)),
+             not complete. Tolerance: a tenth of a bin of {} s, {} Hz; the paper prints its lines to 1 Hz. A white noise of \
+             {} µm on the displacement is assumed. Frequency, height and phase of every line stand on [their own page](peaks.md).",
+            significant(1e2 * HARMONIC_SHARE, 2),
+            context.stated.time_step.printed(),
+            significant(0.5 * context.sample_rate_hz(), 2),
+            significant(DURATION_S, 2),
+            significant(LINE_TOLERANCE_HZ, 2),
+            significant(1e6 * NOISE_M, 2),
+        )),
+        Block::Table(Table::comparisons(
+            "Table 2, high lines of the displacement",
+            &high,
+        )),
         Block::Table(line_table(&found)),
     ];
     if let Some(row) = context.table2.rows.first() {
@@ -262,16 +285,17 @@ fn charts(rebuilt: &RebuiltRecord) -> Result<Vec<Block>, ReproduceError> {
     Ok(vec![
         Block::Figure(
             "fig12-displacement",
-            "Fig. 12 in kind: spectrum of the displacement at 1 Hz, rebuilt, with the line at 49 Hz"
+            "Fig. 12 in kind: spectrum of the displacement at 1 Hz, rebuilt, with its line at 50 − f"
                 .to_owned(),
             chart(DISPLACEMENT_CHANNEL, "amplitude [mm]", 1e3, 1e-10)?,
         ),
         Block::Figure(
             "fig12-force",
-            "Fig. 12 in kind: spectrum of the pressure force at 1 Hz, rebuilt. No line at 2.499 Hz \
-             and none at 49 Hz (what is below 1e-3 N is drawn there)"
-                .to_owned(),
-            chart(FORCE_CHANNEL, "amplitude [N]", 1.0, 1e-3)?,
+            format!(
+                "Fig. 12 in kind: spectrum of the pressure force at 1 Hz, rebuilt: harmonics of the excitation and no \
+                 further line (what is below {LEAST_FORCE_LINE_N} N is drawn there)"
+            ),
+            chart(FORCE_CHANNEL, "amplitude [N]", 1.0, LEAST_FORCE_LINE_N)?,
         ),
     ])
 }

@@ -2,11 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use simgap_alpha::leads;
+use simgap_alpha::{leads, unknown_force};
+use simgap_integrate::inverse::Differentiator;
 use simgap_report::chart::{LineChart, Role, Series};
 
-use super::simulated::step_response;
-use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table};
+use super::simulated::response;
+use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table, significant};
 
 /// Force step, N. The paper does not print its own; the response is proportional to it.
 const STEP_N: f64 = 10_000.0;
@@ -47,46 +48,247 @@ pub(crate) fn read_step(response: &[f64], time_step_s: f64, force_n: f64) -> Opt
     })
 }
 
-/// Table 1 beside what a simulated step returns.
-pub(crate) fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
-    let response = step_response(&context.mold, STEP_N, STEP_SAMPLING_S, 3001)?;
-    let Some(read) = read_step(&response, STEP_SAMPLING_S, STEP_N) else {
-        return Ok(vec![]);
-    };
-    let row = |item: &str, value: &simgap_tables::PrintedValue, ours: f64| Comparison {
+/// A quantity of Table 1 beside ours, in the unit printed.
+fn row(item: &str, value: &simgap_tables::PrintedValue, ours_si: f64, share: f64) -> Comparison {
+    Comparison {
         item: item.to_owned(),
         unit: value.unit().symbol(),
         printed: value.printed().to_owned(),
         published: value.value(),
-        ours,
-        tolerance: STEP_TOLERANCE * value.value(),
-    };
+        ours: ours_si / value.unit().si_factor(),
+        tolerance: share * value.value(),
+    }
+}
+
+/// Table 1 beside a mass, damping ratio and stiffness.
+fn beside(context: &Context, read: &StepReading, share: f64) -> Vec<Comparison> {
     let table1 = &context.table1;
-    Ok(vec![
-        row(
-            "m, mass",
-            &table1.mass,
-            read.mass_kg / table1.mass.unit().si_factor(),
-        ),
+    vec![
+        row("m, mass", &table1.mass, read.mass_kg, share),
         row(
             "ζ, damping ratio",
             &table1.damping_ratio,
             read.damping_ratio,
+            share,
         ),
-        row("K, total stiffness", &table1.stiffness, read.stiffness),
+        row(
+            "K, total stiffness",
+            &table1.stiffness,
+            read.stiffness,
+            share,
+        ),
+    ]
+}
+
+/// Table 1 beside what a simulated step returns.
+pub(crate) fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
+    let response = response(&context.mold, &|_| STEP_N, STEP_SAMPLING_S, 3001)?;
+    let read = read_step(&response, STEP_SAMPLING_S, STEP_N);
+    Ok(read.map_or_else(Vec::new, |read| beside(context, &read, STEP_TOLERANCE)))
+}
+
+/// Time in which the pressure of the step rises, s. **Assumed**, as the step itself.
+const RISE_S: f64 = 0.05;
+
+/// Length of a weight of the weak form, s, and how far one lies from the next.
+const WEIGHT_S: [f64; 2] = [0.8, 0.05];
+
+/// Relative tolerance of Table 1 from the pressure: the trapezoidal sums of the weak form at 0.01 s leave out what the
+/// force has above half the sample rate, 1/(2πf RISE_S)² of it.
+const PRESSURE_TOLERANCE: f64 = 5e-3;
+
+/// Displacement and pressure force of a step at the paper's sampling: 4 s.
+fn pressure_step(context: &Context) -> Result<[Vec<f64>; 2], ReproduceError> {
+    let force = |time: f64| STEP_N * (1.0 - (-time / RISE_S).exp() * (1.0 + time / RISE_S));
+    let (step, fine) = (context.time_step_s(), 10);
+    let count = 400;
+    let all = response(
+        &context.mold,
+        &force,
+        step / f64::from(fine),
+        fine as usize * count,
+    )?;
+    let displacement = all.into_iter().step_by(fine as usize).collect();
+    Ok([
+        displacement,
+        (0..count).map(|n| force(n as f64 * step)).collect(),
     ])
 }
 
+/// Mass, damping and stiffness from the pressure force and the displacement of a step, by the weak form
+///
+/// ```text
+/// ∫ w F dt = m ∫ ẅ y dt − c ∫ ẇ y dt + k ∫ w y dt,    w = sin⁴ over a stretch,
+/// ```
+///
+/// which takes no derivative of what was measured.
+fn weak_form(context: &Context, [displacement, force]: &[Vec<f64>; 2]) -> Option<StepReading> {
+    let step = context.time_step_s();
+    let [length, hop] = WEIGHT_S.map(|seconds| (seconds / step).round() as usize);
+    let rate = PI / (length as f64 * step);
+    let (mut rows, mut right) = (vec![], vec![]);
+    for start in (0..displacement.len() - length).step_by(hop) {
+        let mut sums = [0.0; 4];
+        for n in 0..=length {
+            let (sin, cos) = (rate * n as f64 * step).sin_cos();
+            let weight = sin.powi(4);
+            let slope = 4.0 * rate * sin.powi(3) * cos;
+            let bend = 4.0 * rate * rate * sin * sin * (3.0 * cos * cos - sin * sin);
+            let y = displacement[start + n];
+            for (sum, term) in
+                sums.iter_mut()
+                    .zip([bend * y, -slope * y, weight * y, weight * force[start + n]])
+            {
+                *sum += step * term;
+            }
+        }
+        rows.push([sums[0], sums[1], sums[2]]);
+        right.push(sums[3]);
+    }
+    reading(least_squares(&rows, &right)?)
+}
+
+/// The same by Park's formula twice, as the paper differentiates: F = m a + c v + k y.
+fn by_park(
+    context: &Context,
+    [displacement, force]: &[Vec<f64>; 2],
+) -> Result<Option<StepReading>, ReproduceError> {
+    let step = context.time_step_s();
+    let found = unknown_force(
+        &context.plant,
+        displacement,
+        force,
+        step,
+        Differentiator::Park,
+    )?;
+    let settled = found.settling_samples..displacement.len();
+    let rows: Vec<[f64; 3]> = settled
+        .clone()
+        .map(|n| [found.acceleration[n], found.velocity[n], displacement[n]])
+        .collect();
+    Ok(least_squares(&rows, &force[settled]).and_then(reading))
+}
+
+fn reading([mass_kg, damping, stiffness]: [f64; 3]) -> Option<StepReading> {
+    (mass_kg > 0.0 && stiffness > 0.0).then(|| StepReading {
+        mass_kg,
+        damping_ratio: 0.5 * damping / (mass_kg * stiffness).sqrt(),
+        stiffness,
+    })
+}
+
+/// Three unknowns by normal equations, each column scaled to one.
+fn least_squares(rows: &[[f64; 3]], right: &[f64]) -> Option<[f64; 3]> {
+    let scale = [0, 1, 2].map(|j| rows.iter().map(|row| row[j] * row[j]).sum::<f64>().sqrt());
+    let mut system = [[0.0; 4]; 3];
+    for (row, value) in rows.iter().zip(right) {
+        for i in 0..3 {
+            for j in 0..3 {
+                system[i][j] += row[i] * row[j] / (scale[i] * scale[j]);
+            }
+            system[i][3] += row[i] * value / scale[i];
+        }
+    }
+    for at in 0..3 {
+        let pivot = system[at][at];
+        if pivot.is_nan() || pivot <= 1e-12 {
+            return None;
+        }
+        for below in at + 1..3 {
+            let factor = system[below][at] / pivot;
+            for j in at..4 {
+                system[below][j] -= factor * system[at][j];
+            }
+        }
+    }
+    let mut found = [0.0; 3];
+    for at in (0..3).rev() {
+        let known: f64 = (at + 1..3).map(|j| system[at][j] * found[j]).sum();
+        found[at] = (system[at][3] - known) / system[at][at];
+    }
+    Some([0, 1, 2].map(|j| found[j] / scale[j]))
+}
+
+/// Table 1 from the pressure force of a step: without derivatives, and through Park's formula.
+pub(crate) fn pressure_comparisons(
+    context: &Context,
+) -> Result<[Vec<Comparison>; 2], ReproduceError> {
+    let step = pressure_step(context)?;
+    let list = |read: Option<StepReading>| {
+        read.map_or_else(Vec::new, |read| beside(context, &read, PRESSURE_TOLERANCE))
+    };
+    Ok([
+        list(weak_form(context, &step)),
+        list(by_park(context, &step)?),
+    ])
+}
+
+/// Numbers of samples up to 100 s for which the printed frequency is a bin, and the one nearest to the natural
+/// frequency of Table 1.
+pub(crate) fn bins(context: &Context) -> Vec<usize> {
+    let printed = context.stated.first_natural_freq.printed();
+    let decimals = printed
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    let step = context.time_step_s();
+    (100..=10_000)
+        .filter(|count| {
+            let length = *count as f64 * step;
+            let bin = (context.mold.natural_freq_hz() * length).round() / length;
+            format!("{bin:.decimals$}") == printed
+        })
+        .collect()
+}
+
+/// Half a bin of the shortest record that has the printed frequency as a bin, Hz.
+pub(crate) fn half_bin_hz(context: &Context) -> f64 {
+    let count = bins(context).first().copied().unwrap_or(usize::MAX);
+    0.5 / (count as f64 * context.time_step_s())
+}
+
+fn bin_text(context: &Context) -> String {
+    let found = bins(context);
+    let stated = context.stated.first_natural_freq.printed();
+    let natural = context.mold.natural_freq_hz();
+    let Some(count) = found.first() else {
+        return format!(
+            "No record up to 100 s has {stated} Hz as the bin nearest to {} Hz.",
+            significant(natural, 5)
+        );
+    };
+    let length = *count as f64 * context.time_step_s();
+    format!(
+        "**{stated} Hz is a bin.** The spectrum of {count} samples at {} s, {} s and one sample more, has bins {} Hz apart, and the one nearest to the natural \
+         frequency {} Hz of Table 1 is {} Hz, which prints as {stated}. It is the shortest record of which that is true; of those up to \
+         100 s {} are like it: {} samples. How long the paper's was is not printed. So the paper's first natural frequency is that of its Table 1, read off the nearest bin, if its record had one of these lengths: within the resolution \
+         (tolerance: half a bin, {} Hz), and no sign of another mass or damping.",
+        context.stated.time_step.printed(),
+        (length - context.time_step_s()).round(),
+        significant(1.0 / length, 4),
+        significant(natural, 5),
+        significant((natural * length).round() / length, 6),
+        found.len(),
+        found
+            .iter()
+            .map(usize::to_string)
+            .collect::<Vec<_>>()
+            .join(", "),
+        significant(half_bin_hz(context), 2),
+    )
+}
+
 pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
-    let response = step_response(&context.mold, STEP_N, STEP_SAMPLING_S, 1501)?;
+    let response = response(&context.mold, &|_| STEP_N, STEP_SAMPLING_S, 1501)?;
+    let [weak, park] = pressure_comparisons(context)?;
     let mut blocks = vec![
         Block::Text(format!(
             "The paper reads mass, damping ratio and stiffness off the response to a step. The step is \
              not printed; here the printed values drive a 1-DOF simulation of a {} kN step, and the same \
              reading is taken from it. That it returns the printed values shows the chain to be \
-             consistent, not that the machine has them. Tolerance: the reading from samples 1 ms apart, \
-             1e-4 of the value.",
-            STEP_N / 1e3
+             consistent, not that the machine has them. Tolerance: the reading from samples {} ms apart, \
+             {STEP_TOLERANCE} of the value.",
+            STEP_N / 1e3,
+            1e3 * STEP_SAMPLING_S
         )),
         Block::Table(Table::comparisons("Table 1", &comparisons(context)?)),
         Block::Figure(
@@ -95,13 +297,32 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
                 .to_owned(),
             step_chart(&response),
         ),
+        Block::Text(format!(
+            "**From the pressure difference.** The paper says that the values come from the pressure difference in the cylinder when a step \
+             is applied. Here the pressure force of a step (rising within {} ms, assumed) and the displacement, both sampled at {} s, are put \
+             into Eq. (1) in its weak form, with weights of {} s, which takes no derivative of what was measured. Tolerance: {} %, for what \
+             the sums leave out above half the sample rate. Through Park's formula, as the paper differentiates, the same record gives the \
+             second table.",
+            1e3 * RISE_S,
+            context.stated.time_step.printed(),
+            WEIGHT_S[0],
+            1e2 * PRESSURE_TOLERANCE,
+        )),
+        Block::Table(Table::comparisons(
+            "Table 1 from the pressure force of a step, weak form",
+            &weak,
+        )),
+        Block::Table(Table::comparisons(
+            "Table 1 from the pressure force of a step, Park's formula",
+            &park,
+        )),
         Block::Table(implied(context)),
     ];
     blocks.extend(natural_freq(context)?);
     Ok(Page {
         stem: "table1",
-        title: "Table 1: configuration, and 2.499 Hz".to_owned(),
-        summary: "mass, damping, stiffness, and the natural frequency the text states".to_owned(),
+        title: format!("Table 1: configuration, and {} Hz", context.stated.first_natural_freq.printed()),
+        summary: "mass, damping and stiffness from a step and from its pressure; the natural frequency the text states, as a bin".to_owned(),
         blocks,
     })
 }
@@ -112,7 +333,7 @@ fn step_chart(response: &[f64]) -> LineChart<'static> {
         .collect();
     let value: Vec<f64> = response.iter().map(|y| 1e3 * y).collect();
     LineChart::new(
-        "Step of 10 kN on the 1-DOF model",
+        format!("Step of {} kN on the 1-DOF model", 1e-3 * STEP_N),
         "time [s]",
         "displacement [mm]",
     )
@@ -167,45 +388,59 @@ fn natural_freq(context: &Context) -> Result<Vec<Block>, ReproduceError> {
             printed: stated.printed().to_owned(),
             published: stated.si(),
             ours,
-            // One bin of the 20 s records used here.
-            tolerance: 0.05 * 0.1,
+            tolerance: half_bin_hz(context),
         })
         .collect();
     let ratio = leads::damping_ratio_of_damped_freq(mold.natural_freq_hz(), stated.si())?;
     let mass = leads::mass_of_natural_freq(mold.stiffness(), stated.si())?;
     let stiffness = mold.mass_kg() * (TAU * stated.si()).powi(2);
-    let mut table = Table::new("What 2.499 Hz would need", &["change", "to", "from"]);
+    let mut table = Table::new(
+        "What the printed frequency would need to all its digits",
+        &["change", "to", "from"],
+    );
     let mut row = |change: &str, to: String, from: String| {
         table
             .rows
             .push(vec![Cell::text(change), Cell::text(to), Cell::text(from)]);
     };
-    let short = super::significant;
+    let short = significant;
+    let first = &context.table3.rows[0];
+    let first_share = leads::damping_share(
+        first.peak_to_peak.si(),
+        mold.damping(),
+        context.amplitude(),
+        first.excitation.si(),
+    )?;
     row(
         "damping ratio, if it is the damped frequency",
         short(ratio, 3),
-        short(0.3, 1),
+        context.table1.damping_ratio.printed().to_owned(),
     );
     row(
         "mass, if it is the natural frequency",
         format!("{} kg", short(mass, 5)),
-        "33000 kg".into(),
+        format!("{} t", context.table1.mass.printed()),
     );
     row(
         "stiffness, if it is the natural frequency",
         format!("{} N/m", short(stiffness, 5)),
-        "8287639 N/m".into(),
+        format!("{} N/m", context.table1.stiffness.printed()),
     );
     Ok(vec![
-        Block::Table(Table::comparisons("Section 3.1: 2.499 Hz", &rows)),
-        Block::Text(
-            "2.499 Hz is none of the three frequencies of Table 1 (tolerance: a tenth of a bin of a \
-             20 s record, 0.005 Hz). It is the damped frequency at a damping ratio near 0.135, which \
-             is near the 0.14 that Table 3 suggests at 1 Hz ([Table 3](table3.md)), or the natural \
-             frequency of a mass 1.9 % larger. The rebuilt pressure has no line there: nothing but \
-             harmonics of the excitation is in it."
-                .to_owned(),
-        ),
+        Block::Table(Table::comparisons(
+            "Section 3.1: the first natural frequency",
+            &rows,
+        )),
+        Block::Text(bin_text(context)),
+        Block::Text(format!(
+            "Read to all its digits, {} Hz would be the damped frequency at a damping ratio of {}, near the {} that Table 3 suggests \
+             at the lowest excitation ([Table 3](table3.md)), or the natural frequency of a mass {} % larger. The rebuilt pressure has no line \
+             there: nothing but harmonics of the excitation is in it.",
+            stated.printed(),
+            short(ratio, 3),
+            short((1.0 - first_share) * mold.damping_ratio(), 2),
+            short(1e2 * (mass / mold.mass_kg() - 1.0), 2),
+        )),
         Block::Table(table),
     ])
 }

@@ -8,15 +8,21 @@ use simgap_signal::spectrum::spectrum;
 use simgap_signal::{Trend, Window};
 
 use super::context::{EXCITATIONS_HZ, PARK};
+use super::number::range;
+use super::page::print_resolution;
 use super::spectra::stems;
 use super::table3::HARMONICS;
 use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table, significant};
 
-/// One timing error for six rows may miss a row's F0 by this: the scatter it leaves is 6.3 %.
-const AMPLITUDE_TOLERANCE: f64 = 0.07;
+/// Length of the records that the paper took its spectra from, s: 2.499 Hz is a bin of 2001 samples
+/// ([Table 1](table1.md)).
+const RECORD_S: f64 = 20.0;
 
-/// The printed ω scatter by 0.12 Hz about 100 − 2f, that is the lines by 0.06 Hz.
-const BASE_TOLERANCE_HZ: f64 = 0.125;
+/// What ω, twice the frequency of a line, may be off, Hz: each line by the resolution 1/T of the
+/// record, and half a unit of the last digit printed.
+fn base_tolerance(printed: &simgap_tables::PrintedValue) -> f64 {
+    2.0 / RECORD_S + print_resolution(printed.printed())
+}
 
 /// The beat part of a rebuilt record at the paper's rate, its Fourier part taken out first.
 pub(crate) fn beat_of(
@@ -45,6 +51,7 @@ pub(crate) fn beat_of(
 /// Table 4 beside the beat part of the records rebuilt with the one timing error.
 fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
     let mut rows = Vec::new();
+    let (_, _, scatter) = proportional(context);
     for row in &context.table4.rows {
         let freq = row.excitation.si();
         let beat = beat_of(context, freq, context.timing_reading())?.parameters;
@@ -60,7 +67,8 @@ fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
             ours,
             tolerance,
         };
-        let tolerance = AMPLITUDE_TOLERANCE * row.amplitude.si();
+        // What the paper calls proportional scatters by as much.
+        let tolerance = scatter * row.amplitude.si();
         rows.push(compare(
             "F0",
             "N",
@@ -73,14 +81,14 @@ fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
             "Hz",
             &row.base,
             super::round_to(beat.base_hz, 7),
-            BASE_TOLERANCE_HZ,
+            base_tolerance(&row.base),
         ));
         rows.push(compare(
             "δ",
             "Hz",
             &row.split,
             super::round_to(beat.split_hz, 7),
-            BASE_TOLERANCE_HZ,
+            base_tolerance(&row.split),
         ));
     }
     Ok(rows)
@@ -93,30 +101,21 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
             "Six records are rebuilt with **one** unknown for all rows: every other sample of the \
              displacement τ = {} ± {} ms late, the others as early. Each goes through Park's formula twice and \
              Eq. (3), the Fourier part is taken out, and F0 cos(δt/2) cos((ω+δ)t/2), read with cycles, is fitted to what is \
-             left. At 100 Hz the two lines of a beat about 50 Hz fold onto one another: that its carrier is \
+             left. At the paper's rate the two lines of a beat about 50 Hz fold onto one another: that its carrier is \
              50 Hz, and that there is a line above it, is the form of the fit and not a finding, for \
-             the paper as for us.\n\nTolerances: 7 % for F0, the scatter of one number for six rows; 0.125 Hz \
-             for ω, the scatter of the printed values about 100 − 2f.",
+             the paper as for us.\n\nTolerances: for F0 {} %, by which the printed F0 scatter about the line through zero that \
+             the paper calls proportional; for ω and δ, twice the resolution 1/T of a record of T = {RECORD_S} s (a record of that \
+             length has a bin at {} Hz, [Table 1](table1.md)) and half a unit of the last digit printed.",
             significant(1e3 * context.timing.value, 3),
             significant(1e3 * context.timing.standard_error, 1),
+            significant(1e2 * proportional(context).2, 2),
+            context.stated.first_natural_freq.printed(),
         )),
         Block::Table(Table::comparisons("Table 4", &rows)),
         Block::Table(lines(context)),
-        Block::Text(
-            "**Frequencies.** Read with cycles (times 2π), all printed lines lie within 0.06 Hz of \
-             50 ∓ f and all carriers (ω+δ)/2 within 49.95 to 50.06 Hz.".to_owned(),
-        ),
+        Block::Text(frequencies_text(context)),
         Block::Table(explanations(context)?),
-        Block::Text(
-            "**One number.** With A = 2 mm and Park's formula, alternating timing explains the six F0 \
-             with R² = 0.994 (R² about the mean of the six, least squares over the six F0). An alternating gain, flat in f, is worse than the mean \
-             of the six values. With the exact derivative timing still explains them, less well: the \
-             formula matters, since at the Nyquist frequency Park's gain is 533 1/s where the true \
-             factor is 314 1/s. A straight line through zero, as the text says (\"proportional to the excitation \
-             frequency\"), is also one number, and nearly as good: six points with this scatter favour timing through Park's formula, they \
-             do not prove it."
-                .to_owned(),
-        ),
+        Block::Text(one_number_text(context)?),
         Block::Figure(
             "table4-amplitude",
             "Table 4: F0 as published, and from one number".to_owned(),
@@ -131,6 +130,51 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
         summary: "F0, ω, δ for 1 to 6 Hz from one timing error; alternatives".to_owned(),
         blocks,
     })
+}
+
+/// Largest distance of a printed line from 50 ∓ f, and the carriers, Hz.
+pub(crate) fn printed_lines(context: &Context) -> (f64, Vec<f64>) {
+    let base = context.stated.image_base.si();
+    let mut off = 0.0_f64;
+    let mut carriers = vec![];
+    for row in &context.table4.rows {
+        let (freq, beat) = (row.excitation.si(), published_beat(row));
+        let lines = beat.lines();
+        off = off
+            .max((lines.lower_hz - base + freq).abs())
+            .max((lines.upper_hz - base - freq).abs());
+        carriers.push(beat.carrier_hz());
+    }
+    (off, carriers)
+}
+
+fn frequencies_text(context: &Context) -> String {
+    let (off, carriers) = printed_lines(context);
+    format!(
+        "**Frequencies.** Read with cycles (times 2π), all printed lines lie within {} Hz of 50 ∓ f and all carriers \
+         (ω+δ)/2 within {} Hz. A row outside its tolerance is not explained by the resolution of the record.",
+        significant(off, 1),
+        range(&carriers, 4),
+    )
+}
+
+fn one_number_text(context: &Context) -> Result<String, ReproduceError> {
+    let exact = context.explain(RateFormula::Exact, ConverterFault::AlternatingTiming)?;
+    let (nyquist, step) = (0.5 * context.sample_rate_hz(), context.time_step_s());
+    Ok(format!(
+        "**One number.** With A = {} mm and Park's formula, alternating timing explains the six F0 \
+         with R² = {} (R² about the mean of the six, least squares over the six F0). An alternating gain, flat in f, is \
+         worse than the mean of the six values. With the exact derivative timing still explains them, less well (R² = {}): the \
+         formula matters, since at the Nyquist frequency Park's gain is {} 1/s where the true \
+         factor is {} 1/s. A straight line through zero, as the text says (\"proportional to the excitation \
+         frequency\"), is also one number, and nearly as good: six points with this scatter favour timing through Park's \
+         formula, they do not prove it ([all readings](readings.md)).",
+        context.stated.amplitude.printed(),
+        significant(context.timing.r_squared, 3),
+        significant(exact.r_squared, 3),
+        significant(PARK.rate(nyquist, step)?.norm(), 3),
+        significant(RateFormula::Exact.rate(nyquist, step)?.norm(), 3),
+    ))
 }
 
 fn published_beat(row: &simgap_tables::BeatRow) -> BeatParameters {
@@ -291,19 +335,20 @@ fn spectrum_figure(context: &Context) -> Result<Block, ReproduceError> {
         "amplitude [kN]",
     )
     .with(Series::new(
-        "beat function of Table 4, sampled at 100 Hz",
+        "beat function of Table 4, sampled as the record",
         Role::Nominal,
         freq_printed,
         theirs,
     ))
     .with(stems("rebuilt record", Role::Measured, freq, ours));
-    Ok(Block::Figure(
-        "fig06-spectrum",
-        "Fig. 6 in kind: spectrum near 50 Hz. The printed beat has lines at 48.97 and 50.97 Hz; the \
-         second folds to 49.03 Hz"
-            .to_owned(),
-        chart,
-    ))
+    let lines = beat.lines();
+    let caption = format!(
+        "Fig. 6 in kind: spectrum near 50 Hz. The printed beat has lines at {} and {} Hz; the second folds to {} Hz",
+        significant(lines.lower_hz, 4),
+        significant(lines.upper_hz, 4),
+        significant(rate - lines.upper_hz, 4),
+    );
+    Ok(Block::Figure("fig06-spectrum", caption, chart))
 }
 
 fn time_figure(context: &Context) -> Result<Block, ReproduceError> {

@@ -135,7 +135,7 @@ pub fn integrators_know_no_effect(workspace: &Workspace) -> Vec<Finding> {
 #[must_use]
 pub fn published_numbers_are_only_embedded(workspace: &Workspace) -> Vec<Finding> {
     // Not written out, so that this file does not name the path itself.
-    let path = concat!("fix", "tures/paper");
+    let path = concat!("crates/tables/fix", "tures");
     let prose = format!("`{path}");
     let folder = concat!("\"fix", "tures\"");
     let mut findings = Vec::new();
@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn verify_code_that_could_write_published_numbers_is_found() {
         let rule = published_numbers_are_only_embedded;
-        let path = ["fixtures", "paper"].join("/");
+        let path = ["crates/tables", "fixtures"].join("/");
         let text = format!("fs::write(\"{path}/table1.toml\", x);\n");
         assert_eq!(lines(rule, "xtask/src/a.rs", &text), [1]);
         let text = format!("root.join(\"{}\").join(\"paper\")\n", "fixtures");

@@ -3,8 +3,8 @@
 use simgap_integrate::exact::{ForceLaw, LaneLaw, MemberMotion, gather};
 
 use super::{NODES, START, table, widened};
-use crate::prior::{Prior, usual_prior};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::prior::{Prior, usual_prior};
 
 /// A force tabulated over displacement and velocity.
 ///

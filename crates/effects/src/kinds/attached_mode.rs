@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Damper, Location, Mass, Model, Spring};
 
-use crate::prior::{Prior, usual_prior};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::prior::{Prior, usual_prior};
 use crate::sight::is_unseen;
 
 /// A mass that the model lacks rides on one that it has: a panel, a hose, a flexible load, seen at

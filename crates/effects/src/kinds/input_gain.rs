@@ -1,9 +1,9 @@
 //! An input drives the plant with another gain than assumed.
 
-use simgap_model::NominalQuantity;
 use crate::Prior;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
+use simgap_model::NominalQuantity;
 
 /// An input drives the plant with another gain than assumed.
 pub(crate) struct InputGain;

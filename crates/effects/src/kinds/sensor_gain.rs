@@ -1,9 +1,9 @@
 //! A sensor reads too much or too little in proportion.
 
-use simgap_model::NominalQuantity;
 use crate::Prior;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
+use simgap_model::NominalQuantity;
 
 /// A sensor reads too much or too little in proportion. A negative factor is a sensor of the wrong
 /// sign: swapped wires, or mounted the other way round.

@@ -14,7 +14,7 @@
 //! walk, and one walk is not like another.
 
 use simgap_effects::Placed;
-use simgap_estimate::{EstimateError, Problem, FitOptions, fit_initial_states};
+use simgap_estimate::{EstimateError, FitOptions, Problem, fit_initial_states};
 use simgap_signal::noise::{fall_of_spectrum, white_noise_std};
 use simgap_simulate::Run;
 

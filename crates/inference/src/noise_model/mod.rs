@@ -58,7 +58,11 @@ impl NoiseModel {
         let channels = of_simulation.iter().zip(&driven).zip(&std);
         let floor = channels.map(|((accuracy, driven), std)| {
             let share = accuracy.hypot(driven.beyond(0.0).sqrt()) / std;
-            if share.is_finite() { share.min(1.0) } else { 1.0 }
+            if share.is_finite() {
+                share.min(1.0)
+            } else {
+                1.0
+            }
         });
         let noise = NoiseModel {
             effective_share: vec![],

@@ -7,7 +7,7 @@
 //! sensors; not from the discrepancy, which holds the effect. Where a converter's steps are coarse, what it rounds away is no noise
 //! that a filter could know.
 
-use simgap_estimate::{EstimateError, Fit, Problem, FitOptions, Whitening};
+use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Whitening};
 use simgap_simulate::Run;
 
 use super::input_noise::{draws, square_sum};

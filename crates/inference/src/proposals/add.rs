@@ -109,7 +109,11 @@ impl Search<'_> {
         let fitted = starts.par_iter().filter_map(|start| {
             let adds_mass = start.effects.iter().any(|p| p.action().adds_mass());
             let options = FitOptions {
-                most_steps: if adds_mass { WINDING * most_steps } else { most_steps },
+                most_steps: if adds_mass {
+                    WINDING * most_steps
+                } else {
+                    most_steps
+                },
                 ..self.options.clone()
             };
             // A start from which the plant runs away is no candidate.
@@ -128,7 +132,9 @@ fn pick(scores: Vec<Score>, most: usize, every_kind: bool) -> Vec<Score> {
     let shapes = if every_kind { 2 } else { 1 };
     let mut picked: Vec<Score> = Vec::new();
     for score in scores {
-        let twins = picked.iter().filter(|p| name(&p.start) == name(&score.start));
+        let twins = picked
+            .iter()
+            .filter(|p| name(&p.start) == name(&score.start));
         let is_new_shape = twins.count() < shapes;
         let has_kin = |p: &Score| p.start.effect.kind() == score.start.effect.kind();
         let room = picked.len() < most && score.gain > 1.0;

@@ -65,10 +65,13 @@ impl Search<'_> {
         });
         let pairs: Vec<_> = limits
             .take(LIMITS)
-            .flat_map(|limit| self.space.candidates.iter().map(move |known| (limit, known)))
-            .filter(|(limit, (candidate, _))| {
-                turns_into((candidate.effect, &candidate.at), limit)
+            .flat_map(|limit| {
+                self.space
+                    .candidates
+                    .iter()
+                    .map(move |known| (limit, known))
             })
+            .filter(|(limit, (candidate, _))| turns_into((candidate.effect, &candidate.at), limit))
             .collect();
         let starts = pairs
             .into_par_iter()
@@ -87,20 +90,24 @@ impl Search<'_> {
     fn grown(&self, base: &CandidateModel, index: usize) -> Vec<Start> {
         let old = &base.effects()[index];
         let kind = old.effect.kind();
-        let larger = self.space.candidates.iter().filter_map(|(candidate, scale)| {
-            let effect = candidate.effect;
-            if base.holds(candidate) {
-                return None;
-            }
-            let mut smaller = effect.contains().iter().chain(effect.turns_into());
-            if candidate.at == old.at && smaller.any(|known| *known == kind) {
-                return Some((candidate, *scale));
-            }
-            // Of a mass and its spring to the ground, the spring has the sizes.
-            let spring = spring_to_ground(&candidate.at, &old.at)?;
-            let resembles = effect.resembles().contains(&kind);
-            Some((candidate, self.space.scale_at(spring)?)).filter(|_| resembles)
-        });
+        let larger = self
+            .space
+            .candidates
+            .iter()
+            .filter_map(|(candidate, scale)| {
+                let effect = candidate.effect;
+                if base.holds(candidate) {
+                    return None;
+                }
+                let mut smaller = effect.contains().iter().chain(effect.turns_into());
+                if candidate.at == old.at && smaller.any(|known| *known == kind) {
+                    return Some((candidate, *scale));
+                }
+                // Of a mass and its spring to the ground, the spring has the sizes.
+                let spring = spring_to_ground(&candidate.at, &old.at)?;
+                let resembles = effect.resembles().contains(&kind);
+                Some((candidate, self.space.scale_at(spring)?)).filter(|_| resembles)
+            });
         larger
             .flat_map(|(candidate, scale)| {
                 let shapes = candidate.effect.grown_from(kind, &old.values, &scale);

@@ -12,7 +12,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use simgap_effects::{Family, Placed};
 use simgap_estimate::{
-    Candidate, EstimateError, Fit, Problem, Start, FitOptions, fit, fit_initial_states_from,
+    Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, fit_initial_states_from,
     linearise_at,
 };
 use simgap_model::Location;
@@ -69,7 +69,11 @@ impl Search<'_> {
     }
 
     /// The best laws, alone and together, each stretch with an initial state of its own.
-    fn fit_to_stretches(&self, base: &CandidateModel, cut: &Cut) -> Result<Vec<Start>, EstimateError> {
+    fn fit_to_stretches(
+        &self,
+        base: &CandidateModel,
+        cut: &Cut,
+    ) -> Result<Vec<Start>, EstimateError> {
         let problem = cut.apply(self.problem);
         let nominal = &straight(base);
         let initial = begin(&problem, cut, nominal, &self.options)?;

@@ -7,8 +7,8 @@
 use rayon::prelude::*;
 use simgap_effects::{Effect, SiteScale};
 use simgap_estimate::{
-    Base, Candidate, EstimateError, FitOptions, Score, Start, fit, fit_initial_states, linearise_at,
-    score_outright, score_shapes,
+    Base, Candidate, EstimateError, FitOptions, Score, Start, fit, fit_initial_states,
+    linearise_at, score_outright, score_shapes,
 };
 
 use crate::candidate_model::{CandidateModel, add_scored, is_bent, name, rank, straight};

@@ -38,7 +38,10 @@ impl Search<'_> {
             .into_iter()
             .map(|score| {
                 let start = base.fit.estimate.clone();
-                score.starts.into_iter().fold(start, |start, placed| add(&start, placed))
+                score
+                    .starts
+                    .into_iter()
+                    .fold(start, |start, placed| add(&start, placed))
             })
             .collect();
         Ok(self.fit_all(&starts, linear))
@@ -58,7 +61,10 @@ impl Search<'_> {
     }
 
     /// The best single effects of a pool in pairs, from the values that they were fitted with alone.
-    pub(crate) fn unite(&self, pool: &[CandidateModel]) -> Result<Vec<CandidateModel>, EstimateError> {
+    pub(crate) fn unite(
+        &self,
+        pool: &[CandidateModel],
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
         let singles = pool.iter().filter(|set| set.effects().len() == 1);
         let singles: Vec<&CandidateModel> = singles.take(UNITED).collect();
         let mut found = Vec::new();

@@ -176,7 +176,8 @@ fn left_over(html: &mut Html, diagnosis: &Diagnosis) {
     html.element("h3", &[], "What is left");
     let left = &verdict.unexplained;
     let mut text = if verdict.complete {
-        "The answer is complete: it leaves no more than noise and the accuracy of the simulation.".to_owned()
+        "The answer is complete: it leaves no more than noise and the accuracy of the simulation."
+            .to_owned()
     } else {
         format!(
             "The answer is incomplete: {} of the gap is left on the check records.",

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use simgap_diagnose::{
     BandShare, CandidateResult, ChannelGap, ChannelSeries, ChannelShare, CheckSeries, Diagnosis,
-    Gap, LocationShare, NamedEffect, NamedParameter, RecordShare, Rival, StateShare,
-    Status, TimeShare, Verdict, Where,
+    Gap, LocationShare, NamedEffect, NamedParameter, RecordShare, Rival, StateShare, Status,
+    TimeShare, Verdict, Where,
 };
 use simgap_model::Location;
 use simgap_report::page::ReportContext;

@@ -69,7 +69,7 @@ pub(super) fn on_timing(context: &Context) -> Result<Vec<Claim>, ReproduceError>
              or more would",
             "Tables 2, 4",
             (part_at_the_fast_rate_only(context)?, Verdict::Reproduced),
-            "rebuilt records of both readings have a line at 50 − f at 100 Hz and different lines at 500 Hz ([two readings](readings.md))",
+            "rebuilt records of both readings have a line at 50 − f at 100 Hz and different lines at 500 Hz ([readings](readings.md))",
         ),
     ])
 }

@@ -1,12 +1,14 @@
 //! Claims on the simulated models, with one mass and with two.
 
 use super::super::context::EXCITATIONS_HZ;
-use super::super::table5::models;
-use super::super::{Context, ReproduceError, Verdict, figures, significant};
+use super::super::number::range;
+use super::super::sweep::Sweep;
+use super::super::table5::{MODE_TOLERANCE_HZ, models};
+use super::super::{Context, ReproduceError, Verdict, figures, machine, significant};
 use super::Claim;
 
-/// The paper names its lines and modes to 1 Hz.
-const MODE_TOLERANCE_HZ: f64 = 0.5;
+/// What "near 47 Hz" allows, Hz: the high lines of Table 2 that it is to explain lie as far apart.
+const NEAR_HZ: f64 = 3.0;
 
 pub(super) fn on_one_mass(context: &Context) -> Result<Vec<Claim>, ReproduceError> {
     let mut least = f64::INFINITY;
@@ -14,29 +16,42 @@ pub(super) fn on_one_mass(context: &Context) -> Result<Vec<Claim>, ReproduceErro
         least = least.min(figures::nominal_error(context, freq)?);
     }
     let (_, with_force) = figures::with_unknown_force(context)?;
+    let [sweep_without, sweep_with] = Sweep::new(context)?.errors(context)?;
+    let ([low, high], near) = (machine::cluster(context)?, context.stated.leaf_modes.si());
     Ok(vec![
         Claim::judged(
             "without the unknown force the 1-DOF model does not follow the sweep",
             "2.1.1, Fig. 3",
-            (least > 0.1, Verdict::WithinTolerance),
+            (least.min(sweep_without) > 0.1, Verdict::WithinTolerance),
             format!(
-                "in kind: on the rebuilt records the error is {} of the standard deviation or more; the measured \
-                 sweep is lost ([figures](figures.md))",
+                "in kind: the error is {} of the standard deviation on the rebuilt sweep, {} or more on the records of one \
+                 excitation; the measured sweep is lost ([the sweep](sweep.md))",
+                significant(sweep_without, 2),
                 significant(least, 2)
             ),
         ),
         Claim::judged(
             "with it, it does",
             "3.1, Fig. 11",
-            (with_force < figures::ROUNDING, Verdict::WithinTolerance),
+            (
+                with_force.max(sweep_with) < figures::ROUNDING,
+                Verdict::WithinTolerance,
+            ),
             "in kind, to rounding; true by construction for any record and any model, since the force was \
              computed from the same record",
         ),
         Claim::judged(
             "the finite element model has many modes near 47 Hz",
             "2.2.1, Fig. 9",
-            (false, Verdict::WithinTolerance),
-            "the model is not printed",
+            (
+                (low - near).abs() < NEAR_HZ && (high - near).abs() < NEAR_HZ,
+                Verdict::WithinTolerance,
+            ),
+            format!(
+                "in kind: the model is not printed; four leaf springs of steel of stated dimensions on the moving mass have theirs at \
+                 {} Hz ([the machine](machine.md)); tolerance {NEAR_HZ} Hz",
+                range(&[low, high], 4)
+            ),
         ),
     ])
 }
@@ -111,7 +126,7 @@ pub(super) fn on_two_masses(context: &Context) -> Result<Vec<Claim>, ReproduceEr
                 Verdict::WithinTolerance,
             ),
             format!(
-                "{} Hz too wide at 1 Hz; within 0.3 Hz in the other rows. Tolerance 0.5 Hz",
+                "up to {} Hz off, at 1 Hz. Tolerance {MODE_TOLERANCE_HZ} Hz",
                 significant(modes.split_off, 2)
             ),
         ),
@@ -135,7 +150,8 @@ pub(super) fn on_two_masses(context: &Context) -> Result<Vec<Claim>, ReproduceEr
             "3.2",
             (stiff > 100.0 * soft, Verdict::Reproduced),
             format!(
-                "k₁ · 2 mm = {} MN against K · 2 mm = {} kN",
+                "for {} mm k₁ takes {} MN, K {} kN",
+                context.stated.amplitude.printed(),
                 significant(1e-6 * stiff, 2),
                 significant(1e-3 * soft, 3)
             ),

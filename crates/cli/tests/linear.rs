@@ -1,0 +1,192 @@
+//! `simgap modes` and `simgap sensitivity`: what they print and write, and what they refuse.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use common::{Bench, MODEL};
+use serde_json::Value;
+
+/// The oscillator of the bench: √(800/2) = 20 rad/s, ζ = 4/(2 √1600) = 0.05.
+const OMEGA: f64 = 20.0;
+const ZETA: f64 = 0.05;
+
+/// Rounding of a 2 × 2 eigenvalue problem and of a few sums.
+const ROUNDING: f64 = 1e-10;
+
+/// A free table with a flexible arm under its weight, and an effect.
+const TABLE: &str = r#"schema = "simgap-model/1"
+name = "table"
+[[mass]]
+name = "table"
+value = 30.0
+[[mass]]
+name = "arm"
+value = 0.5
+[[spring]]
+name = "belt"
+between = ["table", "arm"]
+stiffness = 9000.0
+[[damper]]
+name = "guide"
+between = ["table", "ground"]
+damping = 60.0
+[[input]]
+channel = "u"
+kind = "force"
+at = "table"
+[[output]]
+channel = "y"
+kind = "displacement"
+at = "table"
+[[load]]
+at = "table"
+value = -3.0
+[[effect]]
+kind = "coulomb_friction"
+between = ["table", "ground"]
+friction_force_n = 2.0
+"#;
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+fn near(value: &Value, wanted: f64) {
+    let found = value.as_f64().unwrap();
+    assert!(
+        (found - wanted).abs() < ROUNDING * wanted.abs().max(1.0),
+        "{found} instead of {wanted}"
+    );
+}
+
+#[test]
+fn verify_modes_of_an_oscillator() {
+    let bench = Bench::good();
+    let found = json(&bench.done(&["modes", "model.toml", "--format", "json"]));
+    assert_eq!(found["schema"], "simgap-modes/1");
+    let mode = &found["modes"][0];
+    near(&mode["natural_freq_hz"], OMEGA / std::f64::consts::TAU);
+    near(&mode["damping_ratio"], ZETA);
+    near(&mode["pole"]["re"], -ZETA * OMEGA);
+    near(&mode["pole"]["im"], OMEGA * (1.0 - ZETA * ZETA).sqrt());
+    let response = &found["responses"][0];
+    let list = |key: &str| -> Vec<f64> {
+        response[key]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|v| v.as_f64().unwrap())
+            .collect()
+    };
+    for ((freq, gain), phase) in list("freq_hz")
+        .iter()
+        .zip(list("gain"))
+        .zip(list("phase_deg"))
+    {
+        let omega = std::f64::consts::TAU * freq;
+        let (re, im) = (800.0 - 2.0 * omega * omega, 4.0 * omega);
+        assert!((gain * re.hypot(im) - 1.0).abs() < ROUNDING);
+        assert!((phase + im.atan2(re).to_degrees()).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn verify_sensitivities_of_an_oscillator() {
+    let bench = Bench::good();
+    let asked = [
+        "sensitivity",
+        "model.toml",
+        "--tolerance",
+        "3",
+        "--format",
+        "json",
+    ];
+    let found = json(&bench.done(&asked));
+    assert_eq!(found["schema"], "simgap-sensitivity/1");
+    let pole = &found["poles"][0];
+    let rows = pole["parameters"].as_array().unwrap();
+    assert_eq!(rows.len(), 3);
+    let row = |name: &str| rows.iter().find(|row| row["parameter"] == name).unwrap();
+    // f = √(k/m)/2π and ζ = c/(2 √(k m)).
+    let wanted = [
+        ("spring \"rod\"", 0.5, -0.5 * ZETA),
+        ("mass \"block\"", -0.5, -0.5 * ZETA),
+        ("damper \"rod\"", 0.0, ZETA),
+    ];
+    for (name, freq, ratio) in wanted {
+        near(&row(name)["freq_percent_per_percent"], freq);
+        near(&row(name)["damping_ratio_per_percent"], 0.01 * ratio);
+    }
+    let hz = OMEGA / std::f64::consts::TAU;
+    near(&row("spring \"rod\"")["freq_change_hz"], 0.03 * 0.5 * hz);
+    near(&pole["freq_spread_hz"], 0.03 * hz * 0.5_f64.sqrt());
+    // Spring and mass move the pole alike and more than the damper.
+    assert_eq!(rows[2]["parameter"], "damper \"rod\"");
+}
+
+#[test]
+fn regress_tables() {
+    let bench = Bench::good();
+    bench.write("table.toml", TABLE);
+    let mut text = String::new();
+    for model in ["model.toml", "table.toml"] {
+        for command in ["modes", "sensitivity"] {
+            text += &format!("==== {command} {model}\n{}", bench.done(&[command, model]));
+        }
+    }
+    insta::assert_snapshot!(text);
+}
+
+#[test]
+fn verify_what_is_written() {
+    let bench = Bench::good();
+    for command in ["modes", "sensitivity"] {
+        let printed = bench.done(&[command, "model.toml", "--out", command]);
+        assert!(
+            printed.ends_with(&format!("picture: {command}/{command}.svg\n")),
+            "{printed}"
+        );
+        let told = bench.done(&[command, "model.toml", "--format", "json"]);
+        assert_eq!(bench.read(&format!("{command}/{command}.json")), told);
+        assert!(
+            bench
+                .read(&format!("{command}/{command}.svg"))
+                .starts_with("<svg")
+        );
+        assert_eq!(bench.files(command).len(), 2);
+    }
+}
+
+/// A model without masses, and one whose poles repeat, are answered and not refused.
+#[test]
+fn verify_models_without_slopes() {
+    let bench = Bench::new();
+    let free = MODEL
+        .replace("stiffness = 800.0", "stiffness = 0.0")
+        .replace("damping = 4.0", "damping = 0.0");
+    bench.write("free.toml", free);
+    let found = json(&bench.done(&["sensitivity", "free.toml", "--format", "json"]));
+    assert!(
+        found["poles"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|pole| pole["parameters"].is_null())
+    );
+    assert_eq!(found["notes"].as_array().unwrap().len(), 1);
+    bench.done(&["modes", "free.toml", "--out", "out"]);
+}
+
+#[test]
+fn regress_what_is_refused() {
+    let bench = Bench::good();
+    let cases: [&[&str]; 5] = [
+        &["modes", "nothing.toml"],
+        &["modes", "A.csv"],
+        &["sensitivity", "model.toml", "--tolerance", "0"],
+        &["sensitivity", "model.toml", "--tolerance", "few"],
+        &["modes", "model.toml", "--out", "A.csv"],
+    ];
+    let lines = cases.map(|case| bench.refused(case));
+    insta::assert_snapshot!(lines.join("\n"));
+}
