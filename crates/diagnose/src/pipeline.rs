@@ -141,6 +141,11 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let stopped_early = (request.is_spent)();
 
     progress("final fit");
+    // Intervals count the samples that what the answer leaves holds.
+    let noise = match decision.posterior.best() {
+        Some(best) => noise.with_colour_of(&best.fit),
+        None => noise,
+    };
     let final_options = noise.final_options();
     let as_given = &prepared.nominal.estimate.initial;
     let found = decision.start();
