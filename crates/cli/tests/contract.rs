@@ -40,6 +40,7 @@ fn verify_the_files_of_a_result() {
     assert_eq!(
         others,
         [
+            ".simgap-files.json",
             "corrected.toml",
             "diagnosis.json",
             "pictures",

@@ -272,7 +272,12 @@ fn the_sentences_hold(reader: &mut Reader) {
         serde_json::from_str(&reader.run(&line)).unwrap()
     };
     let (nominal, corrected) = (compared("simulated.csv"), compared("corrected.csv"));
-    assert_eq!(nominal["chain"]["status"], "unknown");
+    // A fault of the chain may lead, but does not explain it all.
+    let chain = &nominal["chain"];
+    assert!(
+        chain["status"] == "unknown" || chain["complete"] == false,
+        "{chain}"
+    );
     let gap = |json: &serde_json::Value, key: &str| json["gap"][key].as_f64().unwrap();
     assert!(gap(&nominal, "simulated") > 100.0 * gap(&nominal, "noise_floor"));
     assert!(gap(&corrected, "simulated") < 0.01 * gap(&nominal, "simulated"));

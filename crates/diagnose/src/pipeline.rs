@@ -131,8 +131,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let mut search = Search::new(&prepared.excerpt, &noise, space, budget);
     let base = search.fit(&start)?;
     let pool = search.run(&base)?;
-    // The colour of what the best set leaves, once and for all sets.
-    let noise = noise.with_colour_of(&pool.first().unwrap_or(&base).fit);
+    // The colour of what the set leaves that leaves least, once and for all sets.
+    let least = pool.iter().min_by(|a, b| a.fit.misfit.total_cmp(&b.fit.misfit));
+    let noise = noise.with_colour_of(&least.unwrap_or(&base).fit);
     let mut pool = search.refit(&pool, &noise);
     search.refine(&mut pool)?;
 

@@ -210,9 +210,8 @@ impl<'a> Search<'a> {
             step("single effects in stretches");
             // Where stretches cannot be simulated, nothing is found in them.
             let found = self.multiple_shooting(base).unwrap_or_default();
-            let leads = found
-                .first()
-                .filter(|set| set.log_posterior() > pool[0].log_posterior());
+            let known = pool.first().map_or(f64::NEG_INFINITY, CandidateModel::log_posterior);
+            let leads = found.first().filter(|set| set.log_posterior() > known);
             if let Some(best) = leads {
                 pool.extend(self.extend(best, FITTED[1])?);
             }
@@ -248,7 +247,8 @@ impl<'a> Search<'a> {
             pool.extend(changed.into_iter().flatten());
             pool.retain(|set| set.log_marginal_likelihood.is_finite());
             rank(pool);
-            if (self.budget.is_spent)() || pool[0].key() == best.key() {
+            let stays = pool.first().is_none_or(|first| first.key() == best.key());
+            if stays || (self.budget.is_spent)() {
                 return Ok(());
             }
         }
