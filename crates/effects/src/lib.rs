@@ -28,6 +28,7 @@ mod free;
 mod kinds;
 mod line;
 mod place;
+mod scale;
 mod sight;
 mod signal_map;
 mod wave;
