@@ -107,10 +107,7 @@ mod tests {
         assert_eq!((smooth.len, smooth.time_step_s), (10_000, 0.003));
         // A line near half the sample rate is lost at a lower one.
         let rough = found(&decay, |t| 0.1 * (3000.0 * t).cos());
-        assert_eq!(
-            (rough.len, rough.time_step_s),
-            (12_000, 0.001)
-        );
+        assert_eq!((rough.len, rough.time_step_s), (12_000, 0.001));
         let short = run(2000, |t| t.sin());
         assert_eq!(found(&short, |t| t).len, 2000);
     }

@@ -132,7 +132,9 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let base = search.fit(&start)?;
     let pool = search.run(&base)?;
     // The colour of what the set leaves that leaves least, once and for all sets.
-    let least = pool.iter().min_by(|a, b| a.fit.misfit.total_cmp(&b.fit.misfit));
+    let least = pool
+        .iter()
+        .min_by(|a, b| a.fit.misfit.total_cmp(&b.fit.misfit));
     let noise = noise.with_colour_of(&least.unwrap_or(&base).fit);
     let mut pool = search.refit(&pool, &noise);
     search.refine(&mut pool)?;

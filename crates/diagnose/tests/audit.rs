@@ -120,7 +120,9 @@ fn verify_a_channel_that_nothing_moves_is_named() {
     model.outputs.push(output);
     let clean = clean();
     let mut channels = clean.channels().to_vec();
-    let unit = channels.last().unwrap().unit.symbol().to_string();
+    let like = model.outputs[0].channel.clone();
+    let like = channels.iter().find(|channel| channel.name == like).unwrap();
+    let unit = like.unit.symbol().to_string();
     let values = (0..ROWS).map(|k| (0.3 * k as f64).sin()).collect();
     channels.push(Channel::new("apart", &unit, values));
     let record = Record::from_uniform("A.csv", 0.0, STEP_S, channels).unwrap();

@@ -29,6 +29,7 @@ mod kinds;
 mod line;
 mod place;
 mod prior;
+mod scale;
 mod sight;
 mod signal_map;
 mod wave;

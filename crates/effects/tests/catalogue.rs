@@ -13,15 +13,15 @@ use simgap_effects::{
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_model::{Location, Model};
 
-/// What an action does to the plant or the signal, as numbers that can be compared.
-fn trace(action: &Action, at: &Location) -> Vec<f64> {
+/// What an action does to the plant or to a signal of this sampling interval, as numbers that can be compared.
+fn trace(action: &Action, at: &Location, time_step_s: f64) -> Vec<f64> {
     match action {
         Action::Model(change) | Action::Mode { change, .. } => {
             let mut model = model();
             change(&mut model, at);
             matrix_entries(&model)
         }
-        Action::Member(build) => trace(&Action::Force(build(&model(), at)), at),
+        Action::Member(build) => trace(&Action::Force(build(&model(), at)), at, time_step_s),
         Action::Force(law) => {
             let mut trace = Vec::new();
             for displacement in [-0.004, -0.001, 0.0, 0.0045] {
@@ -40,7 +40,7 @@ fn trace(action: &Action, at: &Location) -> Vec<f64> {
             let (values, measured) = (signal(), measured());
             map.apply(Sampled {
                 measured: Some(&measured),
-                ..Sampled::from_start(&values, scale().time_step_s)
+                ..Sampled::from_start(&values, time_step_s)
             })
         }
     }
@@ -240,7 +240,7 @@ fn verify_neutral_values_change_nothing() {
         let action = effect.action(&neutral(*effect));
         let at = first_site(*effect);
         assert_eq!(
-            trace(&action, &at),
+            trace(&action, &at, scale().time_step_s),
             untouched(&action),
             "{} at its neutral value",
             effect.kind()
@@ -278,7 +278,7 @@ fn verify_starts_are_inside_the_range_and_visible() {
                 }
                 let action = effect.action(&start);
                 assert_ne!(
-                    trace(&action, &first_site(*effect)),
+                    trace(&action, &first_site(*effect), scale.time_step_s),
                     untouched(&action),
                     "{kind} at {start:?} does nothing"
                 );

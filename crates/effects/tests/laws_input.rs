@@ -102,42 +102,41 @@ fn verify_rate_limit_of_a_step_and_of_a_ramp() {
 fn verify_held_input_repeats_samples() {
     let signal: Vec<f64> = (0..10).map(f64::from).collect();
     let of = |samples: f64, first: f64| {
-        let map = map("held_input", &[samples, first]);
+        let map = map("held_input", &[samples * STEP_S, first * STEP_S]);
         through(map.as_ref(), &signal, STEP_S)
     };
-    assert_eq!(
-        of(4.0, 0.0),
-        [0.0, 0.0, 0.0, 0.0, 4.0, 4.0, 4.0, 4.0, 8.0, 8.0]
-    );
+    let assert_held = |found: &[f64], needed: &[f64]| {
+        assert_eq!(found.len(), needed.len());
+        for (found, needed) in found.iter().zip(needed) {
+            assert_near(*found, *needed, ROUNDING);
+        }
+    };
+    let from_start = [0.0, 0.0, 0.0, 0.0, 4.0, 4.0, 4.0, 4.0, 8.0, 8.0];
+    assert_held(&of(4.0, 0.0), &from_start);
     // Before the first renewal the record holds nothing older than its first value.
-    assert_eq!(
-        of(4.0, 3.0),
-        [0.0, 0.0, 0.0, 3.0, 3.0, 3.0, 3.0, 7.0, 7.0, 7.0]
-    );
-    assert_eq!(of(1.0, 0.0), signal);
+    let later = [0.0, 0.0, 0.0, 3.0, 3.0, 3.0, 3.0, 7.0, 7.0, 7.0];
+    assert_held(&of(4.0, 3.0), &later);
+    assert_eq!(of(0.0, 0.0), signal);
+    // Between samples: the value at 2.5 samples is held from sample 3 to 4, that at 5 samples from there.
+    let between = [0.0, 0.0, 0.0, 2.5, 2.5, 5.0, 5.0, 5.0, 7.5, 7.5];
+    assert_held(&of(2.5, 0.0), &between);
     // A stretch keeps the clock of the record.
     let whole = of(3.0, 1.0);
-    let stretch = map("held_input", &[3.0, 1.0]).apply(Sampled {
+    let stretch = map("held_input", &[3.0 * STEP_S, STEP_S]).apply(Sampled {
         first_index: 4,
         ..Sampled::from_start(&signal[4..], STEP_S)
     });
-    assert_eq!(stretch, whole[4..]);
-    let mut values = [3.4, 7.0];
-    effect("held_input").make_physical(&mut values);
-    assert_eq!(values, [3.0, 1.0]);
+    assert_held(&stretch, &whole[4..]);
 }
 
-/// A slow sine through a hold of N samples is late by (N − 1)/2 samples.
+/// A slow sine held every T is late by (T − Δt)/2 at the samples, whatever their rate.
 #[test]
 fn verify_held_input_is_a_delay_for_slow_inputs() {
-    let (freq_hz, samples) = (0.05, 8);
+    let (freq_hz, samples) = (0.05, 8.0);
     let signal = sine(20_000, 1.0, freq_hz);
-    let held = through(
-        map("held_input", &[samples as f64, 0.0]).as_ref(),
-        &signal,
-        STEP_S,
-    );
-    let late_s = 0.5 * (samples as f64 - 1.0) * STEP_S;
+    let map = map("held_input", &[samples * STEP_S, 0.0]);
+    let held = through(map.as_ref(), &signal, STEP_S);
+    let late_s = 0.5 * (samples - 1.0) * STEP_S;
     let expected = (TAU * freq_hz * late_s).cos();
     // The amplitude falls by the sinc of a hold, here by 3e-5.
     assert_near(fundamental(&held, freq_hz), expected, 1e-4);
@@ -145,11 +144,12 @@ fn verify_held_input_is_a_delay_for_slow_inputs() {
 
 #[test]
 fn verify_held_input_starts_hold_every_phase_of_short_holds() {
+    let step_s = scale().time_step_s;
     let starts = effect("held_input").starts(&scale());
     for samples in 2..=5 {
         for first in 0..samples {
-            let start = vec![f64::from(samples), f64::from(first)];
-            assert!(starts.contains(&start), "{start:?}");
+            let start = [samples, first].map(|count| f64::from(count) * step_s);
+            assert!(starts.contains(&start.to_vec()), "{start:?}");
         }
     }
 }

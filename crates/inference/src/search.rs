@@ -210,7 +210,9 @@ impl<'a> Search<'a> {
             step("single effects in stretches");
             // Where stretches cannot be simulated, nothing is found in them.
             let found = self.multiple_shooting(base).unwrap_or_default();
-            let known = pool.first().map_or(f64::NEG_INFINITY, CandidateModel::log_posterior);
+            let known = pool
+                .first()
+                .map_or(f64::NEG_INFINITY, CandidateModel::log_posterior);
             let leads = found.first().filter(|set| set.log_posterior() > known);
             if let Some(best) = leads {
                 pool.extend(self.extend(best, FITTED[1])?);

@@ -1,17 +1,17 @@
-//! An input reaches the plant in held samples.
+//! An input reaches the plant in held values.
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::signal_map::{Sampled, SignalMap};
+use crate::signal_map::{Retiming, Sampled};
 
-/// An input reaches the plant in held samples: a set point that a controller or a bus renews only every N
-/// samples of the record, and holds in between.
+/// An input reaches the plant in held values: a set point that a controller or a bus renews only every T, and
+/// holds in between.
 ///
 /// ```text
-/// u_plant,n = u_m,   m = n − ((n − n₀) mod N),   n counted from the first sample of the record
+/// u_plant(t) = u(t_k),   t_k = t₀ + T ⌊(t − t₀)/T⌋,   t from the first sample of the record
 /// ```
 ///
-/// Seen by a slow plant this is a delay by half of N samples; lines at multiples of 1/(N Δt), less and plus the
-/// frequency of the input, tell it from one.
+/// Seen by a slow plant this is a delay by half of T; lines at multiples of 1/T, less and plus the frequency of the
+/// input, tell it from one.
 ///
 /// Reference: \[Franklin1998\], section 4.3.
 pub(crate) struct HeldInput;
@@ -21,24 +21,27 @@ const SHORT: [usize; 4] = [2, 3, 4, 5];
 /// Longer ones, with the first one at quarters of them.
 const LONG: [usize; 4] = [8, 10, 20, 50];
 const QUARTERS: usize = 4;
-/// Longest hold, samples.
-const MOST: f64 = 1e6;
+/// Share of a hold by which a time that falls on its begin may be rounded down.
+const ROUNDING: f64 = 1e-9;
 
 struct Hold {
-    samples: usize,
-    first: usize,
+    time_s: f64,
+    start_s: f64,
 }
 
-impl SignalMap for Hold {
-    fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
-        let held = |n: usize| {
-            let clock = signal.first_index + n;
-            // n₀ may lie after the first sample: count from one hold earlier.
-            let since = (clock + self.samples - self.first) % self.samples;
-            // What was held before the record is not in it.
-            signal.values[n.saturating_sub(since)]
-        };
-        (0..signal.values.len()).map(held).collect()
+impl Retiming for Hold {
+    fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
+        let first = signal.first_index as f64;
+        let since_s = (first + i as f64) * signal.time_step_s - self.start_s;
+        let count = (since_s / self.time_s + ROUNDING).floor();
+        let held_s = self.start_s + count * self.time_s;
+        let position = held_s / signal.time_step_s - first;
+        // No hold, or one of no length.
+        if position.is_finite() {
+            position
+        } else {
+            i as f64
+        }
     }
 }
 
@@ -56,64 +59,57 @@ impl Effect for HeldInput {
     }
 
     fn summary(&self) -> &'static str {
-        "the input reaches the plant in held samples: it is renewed only every so many samples of the record"
+        "the input reaches the plant in held values: a set point that is renewed only every so often"
     }
 
     fn equation(&self) -> &'static str {
-        "u_plant,n = u_m, m = n - ((n - n_0) mod N)"
+        "u_plant(t) = u(t_k), t_k = t_0 + T floor((t - t_0)/T)"
     }
 
     fn reference(&self) -> Option<&'static str> {
         Some("[Franklin1998], section 4.3")
     }
 
-    /// Whole numbers.
     fn parameters(&self) -> &'static [Parameter] {
         const {
             &[
-                Parameter {
-                    lower: 1.0,
-                    neutral: Some(1.0),
-                    ..Parameter::shape("hold_samples", "1", 1.0, MOST)
-                },
-                Parameter::shape("first_sample", "1", 0.0, MOST),
+                Parameter::size("hold_time_s", "s", 0.0, f64::INFINITY),
+                Parameter::shape("hold_start_s", "s", 0.0, f64::INFINITY),
             ]
         }
     }
 
-    fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
+    /// Whole numbers of samples.
+    fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let start = |samples: usize, first: usize| {
+            [samples, first]
+                .map(|count| count as f64 * scale.time_step_s)
+                .to_vec()
+        };
         let mut starts = vec![];
         for samples in SHORT {
-            starts.extend((0..samples).map(|first| vec![samples as f64, first as f64]));
+            starts.extend((0..samples).map(|first| start(samples, first)));
         }
         for samples in LONG {
             let quarters = (0..QUARTERS).map(|quarter| quarter * samples / QUARTERS);
-            starts.extend(quarters.map(|first| vec![samples as f64, first as f64]));
+            starts.extend(quarters.map(|first| start(samples, first)));
         }
         starts
     }
 
-    /// Whole numbers, the first sample within the first hold.
-    fn make_physical(&self, values: &mut [f64]) {
-        values[0] = values[0].clamp(1.0, MOST).round();
-        values[1] = values[1].clamp(0.0, MOST).round().rem_euclid(values[0]);
-    }
-
-    /// Whole numbers: no fit moves them.
-    fn is_chosen(&self, _: usize) -> bool {
-        true
+    /// What moves the begin of the holds by less than a sample changes nothing but at jumps.
+    fn is_chosen(&self, place: usize) -> bool {
+        place == 1
     }
 
     fn left_out(&self, parameter: &str) -> Option<f64> {
-        (parameter == "first_sample").then_some(0.0)
+        (parameter == "hold_start_s").then_some(0.0)
     }
 
     fn action(&self, values: &[f64]) -> Action {
-        let mut whole = [values[0], values[1]];
-        self.make_physical(&mut whole);
         Action::Input(Box::new(Hold {
-            samples: whole[0] as usize,
-            first: whole[1] as usize,
+            time_s: values[0],
+            start_s: values[1],
         }))
     }
 

@@ -15,6 +15,8 @@ use simgap_signal::noise::white_noise_std;
 
 /// Share of independent samples from which w of (1) is white.
 const WHITE: f64 = 0.8;
+/// Mean size of w of (1) over its rms, at least: 0.80 for normal noise, small for a few jumps among many small steps.
+const EVEN: f64 = 0.7;
 /// Largest a of (1): a discrepancy that is correlated over more than ten samples is a motion.
 const MOST_COLOUR: f64 = 0.92;
 
@@ -44,7 +46,10 @@ pub fn is_sensor_noise(discrepancy: &[f64]) -> bool {
         .collect();
     let count = innovations.len() as f64;
     let independent = effective_sample_count(&innovations).unwrap_or(0.0);
-    colour < MOST_COLOUR && independent > WHITE * count
+    let mean = innovations.iter().map(|w| w.abs()).sum::<f64>() / count;
+    let square = innovations.iter().map(|w| w * w).sum::<f64>() / count;
+    let is_even = mean > EVEN * square.sqrt();
+    colour < MOST_COLOUR && independent > WHITE * count && is_even
 }
 
 /// Variance of the sensor's noise in each channel of discrepancies, over all runs.

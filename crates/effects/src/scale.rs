@@ -1,0 +1,78 @@
+//! Typical sizes at a site.
+
+/// Strongest lines that starting frequencies are taken from.
+pub const LINES: usize = 4;
+
+/// Typical sizes at a site, from which an effect takes its starting values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SiteScale {
+    /// rms of the displacement across the site about its mean, m.
+    pub displacement_m: f64,
+    /// rms of the velocity across the site about its mean, m/s.
+    pub velocity_m_per_s: f64,
+    /// Typical force at the site, N: rms of what accelerates the masses it joins.
+    pub force_n: f64,
+    /// rms of the channel about its mean, in model units (input and output sites).
+    pub signal: f64,
+    /// Sampling interval, s.
+    pub time_step_s: f64,
+    /// Length of the longest record, s.
+    pub duration_s: f64,
+    /// Smallest and largest displacement across the site, m.
+    pub displacement_range_m: [f64; 2],
+    /// Smallest and largest value of the channel as measured, in model units.
+    pub signal_range: [f64; 2],
+    /// Step of the values of the channel, in model units; zero where there is none to be seen.
+    pub signal_step: f64,
+    /// The level nearest to zero of the steps, in model units.
+    pub signal_level: f64,
+    /// Stiffness of the nominal springs at the site, N/m.
+    pub stiffness_n_per_m: f64,
+    /// Whether the model has a spring at the site.
+    pub has_spring: bool,
+    /// Mass of the lighter of the masses at the site, kg.
+    pub mass_kg: f64,
+    /// Strongest lines of what the nominal model leaves (channel sites: of this channel), Hz; zero
+    /// where there are fewer.
+    pub lines_hz: [f64; LINES],
+    /// Strongest lines of the motion, Hz.
+    pub motion_hz: [f64; LINES],
+}
+
+/// [`SiteScale::signal_range`] of a place where no channel is measured.
+const UNKNOWN_RANGE: [f64; 2] = [-1.0, 1.0];
+
+impl SiteScale {
+    /// Range of the values of an input, in model units: as measured where that is known, else three
+    /// times the rms to either side.
+    #[must_use]
+    pub(crate) fn input_range(&self) -> [f64; 2] {
+        if self.signal_range == UNKNOWN_RANGE {
+            [-3.0 * self.signal, 3.0 * self.signal]
+        } else {
+            self.signal_range
+        }
+    }
+
+    /// A scale of the sizes every site has; the rest is unknown.
+    #[must_use]
+    pub fn plain(displacement_m: f64, velocity_m_per_s: f64, force_n: f64) -> SiteScale {
+        SiteScale {
+            displacement_m,
+            velocity_m_per_s,
+            force_n,
+            signal: 1.0,
+            time_step_s: 1e-3,
+            duration_s: 1.0,
+            displacement_range_m: [-1.4 * displacement_m, 1.4 * displacement_m],
+            signal_range: [-1.4, 1.4],
+            signal_step: 0.0,
+            signal_level: 0.0,
+            stiffness_n_per_m: force_n / displacement_m,
+            has_spring: true,
+            mass_kg: 1.0,
+            lines_hz: [0.0; LINES],
+            motion_hz: [0.0; LINES],
+        }
+    }
+}
