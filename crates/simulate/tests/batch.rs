@@ -4,7 +4,7 @@
 mod support;
 
 use proptest::prelude::*;
-use simgap_effects::{Effect, Placed, SiteScale, catalogue, sites};
+use simgap_effects::{Effect, Placed, SiteScale, catalogue, free_laws, sites};
 use simgap_model::{Load, Model, Pendulum};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
 use support::{base_input, force_input, force_output, model, oscillator, output, sampled};
@@ -122,7 +122,7 @@ fn verify_every_kind_of_the_catalogue_in_a_batch() {
         value: 1.7,
         uncertainty,
     });
-    for &effect in catalogue() {
+    for &effect in catalogue().iter().chain(&free_laws()) {
         let has_site = !sites(&plain, effect.site()).is_empty();
         let model = if has_site { &plain } else { &loaded }.clone();
         let simulators: Vec<Simulator> = [1.0, 0.97, 1.1, 0.5]
