@@ -64,12 +64,12 @@ fn of(measured: Vec<f64>, simulated: Vec<f64>) -> Compared {
     compared(&record("m.csv", measured), &record("s.csv", simulated))
 }
 
-/// The fault named first, with the value of its first parameter.
+/// The one fault named, with the value of its first parameter.
 fn named(compared: &Compared) -> (String, f64) {
     let chain = &compared.comparison.chain;
     let kinds: Vec<&str> = chain.effects.iter().map(|e| e.kind.as_str()).collect();
     assert_eq!(chain.status, Status::Effect, "{:?}", compared.comparison);
-    assert!(!kinds.is_empty(), "{:?}", compared.comparison);
+    assert_eq!(kinds.len(), 1, "{kinds:?}");
     let effect = &chain.effects[0];
     (effect.kind.clone(), effect.parameters[0].value)
 }
