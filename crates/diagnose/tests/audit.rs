@@ -121,7 +121,10 @@ fn verify_a_channel_that_nothing_moves_is_named() {
     let clean = clean();
     let mut channels = clean.channels().to_vec();
     let like = model.outputs[0].channel.clone();
-    let like = channels.iter().find(|channel| channel.name == like).unwrap();
+    let like = channels
+        .iter()
+        .find(|channel| channel.name == like)
+        .unwrap();
     let unit = like.unit.symbol().to_string();
     let values = (0..ROWS).map(|k| (0.3 * k as f64).sin()).collect();
     channels.push(Channel::new("apart", &unit, values));
