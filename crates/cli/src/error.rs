@@ -24,7 +24,10 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Record(#[from] RecordError),
     #[error("{}: {error}", .path.display())]
-    Simulate { path: PathBuf, error: SimulateError },
+    Simulate {
+        path: PathBuf,
+        error: Box<SimulateError>,
+    },
     #[error(transparent)]
     Diagnose(#[from] DiagnoseError),
     #[error(transparent)]

@@ -5,6 +5,7 @@ use std::path::Path;
 use simgap_effects::Action;
 use simgap_estimate::{FitOptions, Problem, fit_initial_states, simulator_at};
 use simgap_record::write_csv_atomic;
+use simgap_simulate::SimulateError;
 use simgap_simulate::{Run, output_unit};
 
 use crate::args::SimulateArgs;
@@ -19,9 +20,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     let model = input::model(&args.model)?;
     let input::Input { record, notes } =
         input::record_of_inputs(&args.record, &model, &args.records)?;
-    let failed = |error| CliError::Simulate {
+    let failed = |error: SimulateError| CliError::Simulate {
         path: args.record.clone(),
-        error,
+        error: Box::new(error),
     };
     let mut run = Run::new(&model, &record).map_err(failed)?;
     let mut problem = Problem::new(&model, vec![run.clone()]).map_err(failed)?;

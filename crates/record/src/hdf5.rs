@@ -114,11 +114,8 @@ impl Walk {
             [rows] => (1, rows),
             [outer, inner] => (outer, inner),
             _ => {
-                return Ok(self.leave_out(
-                    path,
-                    "it has more than two dimensions",
-                    MIN_ROWS as u64,
-                ));
+                self.leave_out(path, "it has more than two dimensions", MIN_ROWS as u64);
+                return Ok(());
             }
         };
         let count = outer.saturating_mul(inner);
@@ -144,7 +141,10 @@ impl Walk {
                 counted(&integers.into_iter().map(i128::from).collect::<Vec<_>>())
             }
             Form::Plain => (dataset.read_f64().map_err(&damaged)?, 0.0),
-            Form::Unread(because) => return Ok(self.leave_out(path, because, count)),
+            Form::Unread(because) => {
+                self.leave_out(path, because, count);
+                return Ok(());
+            }
             Form::Single(number) => {
                 let raw = dataset.read_raw().map_err(&damaged)?;
                 (number.column(&raw, 0, number.size), 0.0)

@@ -1,4 +1,5 @@
 //! Cases as a whole.
+#![allow(clippy::unwrap_used)]
 
 use simgap_rigs::{Answer, Filter, Role, draw_case, score};
 

@@ -26,7 +26,7 @@ pub(super) fn read(file: &str, text: &str, notes: &mut Vec<Note>) -> Result<Raw,
     let mut lines = super::text::lines(text).enumerate().peekable();
     let mut reader = Lvm::new(file);
     // Without the header of the file the first one is a segment's.
-    while let Some((_, line)) = lines.next() {
+    for (_, line) in lines.by_ref() {
         if line.trim().starts_with(END) {
             break;
         }

@@ -66,7 +66,7 @@ pub(super) fn value(
 }
 
 /// The value after a key in the first cells of some lines.
-pub(super) fn keyed<'a>(lines: &[&'a str], separator: char, key: &str) -> Option<(usize, String)> {
+pub(super) fn keyed(lines: &[&str], separator: char, key: &str) -> Option<(usize, String)> {
     lines.iter().enumerate().find_map(|(k, line)| {
         let cells = split(line, separator)?;
         let found = cells.first()?.trim_end_matches(':').trim();
