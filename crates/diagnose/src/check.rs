@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
 use simgap_inference::CandidateModel;
-use simgap_inference::noise_model::{accuracy, input_noise};
+use simgap_inference::noise_model::{NOISE_KNOWN, accuracy, input_noise};
 use simgap_simulate::{MemberPath, Run, substeps_for};
 
 use crate::Gap;
@@ -18,8 +18,6 @@ use crate::spread::spread_of_check;
 
 /// What is left of the gap, rms, from which an answer is incomplete.
 const INCOMPLETE: f64 = 0.05;
-/// How well noise is known: its square is told to a tenth.
-const NOISE_KNOWN: f64 = 1.1;
 
 /// The check records.
 pub(crate) struct Check<'a> {

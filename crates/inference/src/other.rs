@@ -1,12 +1,12 @@
 //! The probability that the main cause is a law which the catalogue lacks.
 //!
 //! ```text
-//! u² = Σ_c max(V_c − N_c, 0) / s_c²  over  Σ_c max(G_c − N_c, 0) / s_c²                     (1)
+//! u² = Σ_c max(V_c − 1.1 N_c, 0) / s_c²  over  Σ_c max(G_c − 1.1 N_c, 0) / s_c²             (1)
 //! ln odds = ln(p₀/(1−p₀)) + ½ m ln((u² + r²)/r²) + ½ n ln((u² + r²)/(u_f² + r²))          (2)
 //! ```
 //!
 //! u is what the best set leaves of the gap, u_f what a free law at one place leaves, each over noise: V_c squared
-//! discrepancy, N_c noise, G_c the gap of the model as given (at most the variance s_c² of the channel). What is left is
+//! discrepancy, N_c noise, which is known to a tenth, G_c the gap of the model as given (at most the variance s_c² of the channel). What is left is
 //! no proof of another *main* cause, since no model is exact: a gap counts as few independent observations, m for a cause
 //! of any kind that would explain all of it, n where a law was found that does; shares below r do not count.
 
@@ -16,6 +16,7 @@ use simgap_estimate::{Candidate, EstimateError, Fit, linearise_at, score};
 use simgap_model::Location;
 
 use crate::candidate_model::{CandidateModel, add};
+use crate::noise_model::NOISE_KNOWN;
 use crate::search::Search;
 
 /// p₀ of (2).
@@ -45,7 +46,7 @@ impl Gap {
         let over_noise = |square: &[f64]| -> f64 {
             let channels = square.iter().zip(&self.noise).zip(&self.std);
             channels
-                .map(|((square, noise), std)| (square - noise).max(0.0) / (std * std))
+                .map(|((square, noise), std)| (square - NOISE_KNOWN * noise).max(0.0) / (std * std))
                 .sum()
         };
         let all = over_noise(&self.square);
@@ -147,11 +148,11 @@ mod tests {
     #[test]
     fn verify_shares_of_a_gap_are_over_noise() {
         let gap = Gap {
-            square: vec![1.01, 0.01],
+            square: vec![1.011, 0.01],
             noise: vec![0.01, 0.01],
             std: vec![2.0, 1.0],
         };
-        assert!((gap.left(&[0.26, 0.01]) - 0.5).abs() < 1e-12);
+        assert!((gap.left(&[0.261, 0.01]) - 0.5).abs() < 1e-12);
         assert_eq!(gap.left(&[0.01, 0.005]), 0.0);
         let none = Gap {
             square: vec![0.01],

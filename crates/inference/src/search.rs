@@ -17,7 +17,7 @@ use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Start, fit, linea
 use crate::candidate_model::{CandidateModel, name, rank, remove};
 use crate::marginal_likelihood::{NominalPrior, log_marginal_likelihood};
 use crate::model_space::ModelSpace;
-use crate::noise_model::{NoiseModel, noise_variance, stepped};
+use crate::noise_model::{NOISE_KNOWN, NoiseModel, noise_variance, stepped};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -28,8 +28,6 @@ const REFITTED: usize = 16;
 /// Candidates fitted in the place of each effect of the best set, and beside it.
 const EXCHANGED: usize = 8;
 const ADDED: usize = 4;
-/// What is left, mean square, over that of the noise, where nothing else is: the noise is known to a tenth.
-const NOTHING_LEFT: f64 = 1.1;
 /// Effects of a set at the most.
 const MOST_EFFECTS: usize = 3;
 /// Rounds of changes to the best set.
@@ -156,7 +154,7 @@ impl<'a> Search<'a> {
         let channels = set.fit.variance.iter().zip(self.noise_of(set));
         channels
             .into_iter()
-            .all(|(left, noise)| *left < NOTHING_LEFT * noise)
+            .all(|(left, noise)| *left < NOISE_KNOWN * noise)
     }
 
     /// Sets of none to three effects, best first.

@@ -27,6 +27,8 @@ pub use whitening::whitening;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
 use simgap_signal::correlation::effective_sample_count;
 
+/// How well noise is known: its mean square to a tenth. What is left within it is noise.
+pub const NOISE_KNOWN: f64 = 1.1;
 /// A fit of the search stops when a step gains less than this: sets are told apart by more.
 const SEARCH_CONVERGED: f64 = 0.1;
 /// Steps of a fit of the search: it stops in a flat valley, a final fit does not.
