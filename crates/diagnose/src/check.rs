@@ -113,12 +113,17 @@ impl<'a> Check<'a> {
                     .into(),
             );
         }
-        if self.train.is_whitened() {
-            notes.push(
-                "noise of the inputs is integrated by this plant: effects were judged by whitened residuals; the gap over whole records \
-                 is mostly that noise"
-                    .into(),
-            );
+        if gap.input_noise > gap.noise_floor {
+            let judged = match self.train.is_whitened() {
+                true => {
+                    "; effects were judged by whitened residuals, and the gap over whole records is mostly that noise"
+                }
+                false => "",
+            };
+            notes.push(format!(
+                "noise of the inputs leads this plant away: over whole check records it alone moves the model by {:.2} of the motion{judged}",
+                gap.input_noise
+            ));
         }
         Ok(Checked {
             is_complete: left <= INCOMPLETE,

@@ -219,6 +219,21 @@ fn description(model: &Model, decision: &Decision, checked: &Checked) -> Vec<Str
             channel.channel
         ));
     }
+    if let Some(found) = &decision.other.coincidence {
+        let places: Vec<String> = found.at.iter().map(ToString::to_string).collect();
+        sentences.push(match &places[..] {
+            [one] => format!(
+                "{} {one} has two values that agree: one would do",
+                found.kind
+            ),
+            _ => format!(
+                "{} {} agree in {}: one cause behind them is likelier than one of each",
+                found.kind,
+                places.join(" and "),
+                found.parameter
+            ),
+        });
+    }
     if let Some(law) = &decision.other.law {
         let at = &law.placed.at;
         let closed = 100.0 * (1.0 - law.left);

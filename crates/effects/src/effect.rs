@@ -310,35 +310,14 @@ pub trait Effect: Sync + Send {
         None
     }
 
-    /// The factor that a nominal parameter is known to, whoever made the model; `None` where that is anyone's guess.
-    fn known_to_factor(&self) -> Option<f64> {
-        None
-    }
-
     /// Whether the prior of the kind has any density at these values, at a place of these sizes.
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         let _ = (values, scale);
         true
     }
 
-    /// Values at which nothing is left of what the kind says, with the values that a record has of its own to be found
-    /// again: a mode that nothing excites. A fit that is no better than there does not show what it names.
-    fn degenerate(&self, values: &[f64]) -> Vec<Vec<f64>> {
-        let _ = values;
-        vec![]
-    }
-
-    /// Why the intervals of fitted values look like those of something else that this law imitates, at a
-    /// place of these sizes; `None` where nothing speaks against it.
-    fn doubt(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
-        let _ = (ci95, scale);
-        None
-    }
-
-    /// Why the intervals of fitted values, at a place of these sizes, belie the name of the kind: an asymmetry whose
-    /// two sides are one. `None` where they do not. A law that fits so is another one, by whatever name.
-    fn misnomer(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
-        let _ = (ci95, scale);
+    /// Two values that make the law another one where they agree: an asymmetry whose two sides are one.
+    fn coincidence(&self) -> Option<[usize; 2]> {
         None
     }
 

@@ -30,7 +30,6 @@ mod line;
 mod place;
 mod prior;
 mod scale;
-mod sight;
 mod signal_map;
 mod wave;
 
@@ -44,6 +43,5 @@ pub use free::{VELOCITY_NODES, find_law, free_laws};
 pub use line::Line;
 pub use place::{Placed, same_place, sites};
 pub use prior::{EXACT, LocalPrior, Prior, SLIPPED, SLIPS, Slip, slip_of, usual_prior};
-pub use sight::is_unseen;
 pub use signal_map::{Sampled, SignalMap};
 pub use wave::Wave;

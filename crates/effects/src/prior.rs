@@ -12,6 +12,7 @@
 //! | size | ln \|v − v₀\| | ln median, `log_std` | ½ where both signs are physical |
 //! | factor | ln \|v\| | 0, `log_std` | 1 − [`SLIPPED`] where slips of units are possible |
 //! | factor, beside a slip f | ln \|v\| | ln \|f\|, [`EXACT`] | [`SLIPPED`] over the number of slips |
+//! | factor that may be zero | ln v above 1, v − 1 below | 0, `log_std` | 1 |
 //! | normal | v | mean, std | 1 |
 //! | uniform | v | v, width/√2π | 1 |
 //!
@@ -80,6 +81,11 @@ pub enum Prior {
         /// Whether slips are possible.
         slips: bool,
     },
+    /// Log-normal about one above one, normal below it down to zero: of what may not be there at all.
+    UpToNothing {
+        /// Standard deviation of its logarithm.
+        log_std: f64,
+    },
     /// Normal.
     Normal {
         /// Mean.
@@ -120,12 +126,29 @@ pub fn slip_of(factor: f64) -> Option<Slip> {
 }
 
 impl Prior {
+    /// Whether a value has a well-known cause that acts on many places alike: the unit of a logger.
+    #[must_use]
+    pub fn has_a_common_cause(&self, value: f64) -> bool {
+        match self {
+            Prior::Factor { slips, .. } => *slips && slip_of(value).is_some(),
+            _ => false,
+        }
+    }
+
     /// The prior of a wrong nominal value.
     #[must_use]
     pub const fn factor() -> Prior {
         Prior::Factor {
             log_std: FACTOR_LOG_STD,
             slips: false,
+        }
+    }
+
+    /// The prior of a wrong nominal value of what a machine may lack altogether, such as a damper.
+    #[must_use]
+    pub const fn factor_or_nothing() -> Prior {
+        Prior::UpToNothing {
+            log_std: FACTOR_LOG_STD,
         }
     }
 
@@ -181,6 +204,16 @@ impl Prior {
                     None if value < 0.0 => local(0.0, log_std, SLIPPED / SLIPS.len() as f64),
                     None if slips => local(0.0, log_std, 1.0 - SLIPPED),
                     None => local(0.0, log_std, 1.0),
+                }
+            }
+            Prior::UpToNothing { log_std } => {
+                let is_more = value > 1.0;
+                LocalPrior {
+                    coordinate: if is_more { value.ln() } else { value - 1.0 },
+                    slope: if is_more { value } else { 1.0 },
+                    mean: 0.0,
+                    std: log_std,
+                    log_weight: 0.0,
                 }
             }
             Prior::Normal { mean, std } => LocalPrior {
@@ -292,6 +325,18 @@ mod tests {
             local.log_weight - 0.5 * apart * apart - local.std.ln()
         };
         assert!(density(slipped) > density(wild) + 20.0);
+    }
+
+    #[test]
+    fn verify_what_may_be_missing_costs_little() {
+        let parameter = Parameter::factor("damping_factor");
+        let apart = |value: f64| {
+            let local = Prior::factor_or_nothing().local(value, &parameter);
+            (local.coordinate - local.mean) / local.std
+        };
+        assert!((apart(2.0) - 1.0).abs() < 1e-12);
+        assert!((apart(0.0) + 1.0 / FACTOR_LOG_STD).abs() < 1e-12);
+        assert!((apart(1.0 + 1e-9) - apart(1.0 - 1e-9)).abs() < 1e-8);
     }
 
     #[test]

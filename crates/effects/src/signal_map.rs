@@ -57,9 +57,14 @@ pub trait SignalMap: Send + Sync {
         false
     }
 
-    /// Whether the map moves in steps (rounding), so that it has no derivative to go by.
+    /// The step of a map that moves in steps (rounding).
+    fn step(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether the map moves in steps, so that it has no derivative to go by.
     fn is_stepped(&self) -> bool {
-        false
+        self.step().is_some()
     }
 
     /// Whether it takes from samples what they held, so that what it does hangs on single values: rounding, limits, losses,

@@ -124,34 +124,6 @@ fn verify_an_attached_mass_of_nothing_is_no_hypothesis() {
     assert!(!keeps(1e-6) && !keeps(0.0));
 }
 
-/// Too light to be excited, too heavy or too stiff to be moved: the degenerate cases of a hidden mass act on the plant
-/// as nothing, or as a spring and a damper to the ground.
-#[test]
-fn verify_degenerate_modes_are_no_modes() {
-    let (attached, freq_hz, ratio) = (0.4, 5.0, 0.03);
-    let values = [attached, freq_hz, ratio, 1e-4, -0.02];
-    let cases = effect("attached_mode").degenerate(&values);
-    let omega = TAU * freq_hz;
-    let (stiffness, damping) = (attached * omega * omega, 2.0 * ratio * attached * omega);
-    for (case, is_wall) in cases.iter().zip([false, true]) {
-        let [mass_kg, freq_hz, ratio] = [case[0], case[1], case[2]];
-        let omega = TAU * freq_hz;
-        let (k, c) = (mass_kg * omega * omega, 2.0 * ratio * mass_kg * omega);
-        let share = if is_wall { 1.0 } else { 1e-3 };
-        assert!((k / stiffness / share - 1.0).abs() < 1e-12, "{case:?}");
-        assert!((c / damping / share - 1.0).abs() < 1e-12, "{case:?}");
-        assert_eq!(case[3..], [0.0, 0.0]);
-        assert!(is_wall == (mass_kg > attached));
-    }
-    let values = [2e5, 3.0, 0.05, 1e-4, 0.0];
-    let rigid = effect("flexible_support")
-        .degenerate(&values)
-        .swap_remove(0);
-    // As heavy as it is stiff: it rings at the same frequency.
-    assert_eq!(rigid[0] / rigid[1], values[0] / values[1]);
-    assert!(rigid[0] > 100.0 * values[0] && rigid[2] == values[2]);
-}
-
 #[test]
 fn verify_attached_mode_without_mass_is_none() {
     let values = [0.0, 5.0, 0.03, 1e-4, 0.2];

@@ -6,13 +6,14 @@
 //! proposals of sets      -> fits; a search with budgets                proposals, search
 //! ln Z + ln p of each    -> computed once, never changed               marginal_likelihood
 //! posterior over sets    -> effects, classes, relevance                model_posterior
-//! a law of any shape     -> the probability of another cause           other
+//! a law of any shape, values that agree -> the probability of another cause     other, coincidence
 //! ```
 //!
 //! No stage calls an earlier one. The search may miss a set; it does not judge one. Nothing here knows an effect by name
 //! or what is reported of it.
 
 mod candidate_model;
+mod coincidence;
 mod marginal_likelihood;
 mod model_posterior;
 mod model_space;
@@ -22,6 +23,7 @@ mod proposals;
 mod search;
 
 pub use candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
+pub use coincidence::Coincidence;
 pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterior};
 pub use model_space::ModelSpace;
 pub use noise_model::NoiseModel;

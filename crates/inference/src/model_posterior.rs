@@ -10,16 +10,18 @@
 //! be told apart.
 
 use simgap_effects::{Equivalent, Placed, same_place};
-use simgap_estimate::EstimateError;
+use simgap_estimate::{EstimateError, FitOptions, fit};
 
-use crate::candidate_model::{CandidateModel, name, rank, remove};
+use crate::candidate_model::{CandidateModel, is_bent, name, rank, remove};
+use crate::noise_model::NOISE_KNOWN;
+use crate::other::RELEVANT_SHARE;
 use crate::search::Search;
 
-/// Practical relevance: an effect that closes less than this share of the gap, rms, in every channel is not worth a name;
-const OF_GAP: f64 = 0.015;
-/// nor one that moves every output by less than this share of its motion, rms;
+/// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
+/// name, nor one that moves every output by less than this share of its motion, rms;
 const OF_MOTION: f64 = 0.003;
-/// nor one that explains less than this share of what is left above the noise without it, mean square.
+/// nor one without which no more is left than no set is expected to explain, or that explains less than this share of what is
+/// left above the noise, mean square.
 const OF_REST: f64 = 0.5;
 /// Log odds within which effects cannot be told apart: one to twenty.
 const INDISTINGUISHABLE: f64 = 3.0;
@@ -131,21 +133,35 @@ impl Relevance {
             .fold(0.0, f64::max)
     }
 
-    /// Whether what a set has beyond another is worth a name.
+    /// Whether what a set has beyond another is worth a name. `moved` is what the effect moves each output by.
     fn is_relevant(
         &self,
         search: &Search<'_>,
         with: &CandidateModel,
         without: &CandidateModel,
+        moved: &[f64],
     ) -> bool {
-        let noise = search.noise_of(with);
+        // Nominal parameters that are bent to stand for the effect do what it does.
+        if is_bent(without) && !is_bent(with) {
+            return true;
+        }
+        let noise = search
+            .noise_of(with)
+            .into_iter()
+            .zip(search.unexplainable(without));
         let left = without.fit.variance.iter().zip(noise);
         let channels = closed(with, without).zip(left);
-        let mut channels = channels.zip(self.gap.iter().zip(&self.motion));
-        channels.any(|((closed, (left, noise)), (gap, motion))| {
-            let least = (OF_GAP * gap).max(OF_MOTION * motion);
-            closed > least * least && closed > OF_REST * (left - noise)
-        })
+        let channels = channels.zip(self.gap.iter().zip(&self.motion));
+        let mut channels = channels.zip(moved);
+        channels.any(
+            |(((closed, (left, (noise, floor))), (gap, motion)), moved)| {
+                let stands_out = *left > NOISE_KNOWN * floor;
+                stands_out
+                    && *moved > OF_MOTION * motion
+                    && closed > (RELEVANT_SHARE * gap).powi(2)
+                    && closed > OF_REST * (left - noise)
+            },
+        )
     }
 
     /// The sets of which every effect is relevant, likeliest first.
@@ -176,9 +192,10 @@ impl Relevance {
                 };
                 // A law beyond a special case of it is held to the same.
                 simpler.extend(search.shrink(&set, i));
+                let moved = moved(search, &set, i)?;
                 is_relevant &= simpler
                     .iter()
-                    .all(|other| self.is_relevant(search, &set, other));
+                    .all(|other| self.is_relevant(search, &set, other, &moved));
                 for other in simpler {
                     let key = other.key();
                     if kept.iter().chain(&rest).all(|known| known.key() != key) {
@@ -193,6 +210,31 @@ impl Relevance {
         rank(&mut kept);
         Ok(kept)
     }
+}
+
+/// What one effect of a set moves each output by, with everything else as it is, rms.
+fn moved(
+    search: &Search<'_>,
+    set: &CandidateModel,
+    index: usize,
+) -> Result<Vec<f64>, EstimateError> {
+    let held = FitOptions {
+        most_steps: 0,
+        ..search.options.clone()
+    };
+    let rest = fit(search.problem, &remove(&set.fit.estimate, index), &held)?;
+    let runs = || set.fit.discrepancy.iter().zip(&rest.discrepancy);
+    let channels = 0..search.problem.model.outputs.len();
+    let of_channel = channels.map(|c| {
+        let (mut square, mut count) = (0.0, 0.0);
+        for (with, without) in runs() {
+            let pairs = with[c].iter().zip(&without[c]);
+            square += pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            count += with[c].len() as f64;
+        }
+        (square / f64::max(count, 1.0)).sqrt()
+    });
+    Ok(of_channel.collect())
 }
 
 /// Squared discrepancy of each channel that a set explains and another does not.

@@ -99,25 +99,17 @@ impl ModelSpace {
     /// ln p(S) by (1).
     #[must_use]
     pub fn log_prior(&self, effects: &[Placed]) -> f64 {
-        let all = self.total_weight();
         let each = effects
             .iter()
-            .map(|placed| self.log_prior_of(placed.effect, all));
+            .map(|placed| self.log_prior_of(placed.effect));
         each.sum::<f64>() - EXPECTED_EFFECTS
     }
 
-    /// What the likeliest effect takes from ln p: the least that a further effect must bring.
+    /// What one more effect of a kind adds to ln p.
     #[must_use]
-    pub fn price(&self) -> f64 {
-        let all = self.total_weight();
-        let candidates = self.candidates.iter();
-        let each = candidates.map(|(candidate, _)| -self.log_prior_of(candidate.effect, all));
-        each.fold(f64::INFINITY, f64::min)
-    }
-
-    fn log_prior_of(&self, effect: &dyn Effect, all: f64) -> f64 {
+    pub fn log_prior_of(&self, effect: &dyn Effect) -> f64 {
         let places = self.places(effect.kind()).max(1) as f64;
-        (EXPECTED_EFFECTS * effect.prior_weight() / (all * places)).ln()
+        (EXPECTED_EFFECTS * effect.prior_weight() / (self.total_weight() * places)).ln()
     }
 
     fn places(&self, kind: &str) -> usize {

@@ -2,13 +2,14 @@
 //!
 //! ```text
 //! u² = Σ_c max(V_c − 1.1 N_c, 0) / s_c²  over  Σ_c max(G_c − 1.1 N_c, 0) / s_c²             (1)
-//! ln odds = ln(p₀/(1−p₀)) + ½ m ln((u² + r²)/r²) + ½ n ln((u² + r²)/(u_f² + r²))          (2)
+//! ln odds = ln(p₀/(1−p₀)) + ½ m ln((u² + r²)/r²) + ½ n ln((u² + r²)/(u_f² + r²)) + ln B   (2)
 //! ```
 //!
 //! u is what the best set leaves of the gap, u_f what a free law at one place leaves, each over noise: V_c squared
 //! discrepancy, N_c noise, which is known to a tenth, G_c the gap of the model as given (at most the variance s_c² of the channel). What is left is
 //! no proof of another *main* cause, since no model is exact: a gap counts as few independent observations, m for a cause
-//! of any kind that would explain all of it, n where a law was found that does; shares below r do not count.
+//! of any kind that would explain all of it, n where a law was found that does; shares below r do not count. B is the odds
+//! of one cause behind two effects of the best set whose values agree ([`Coincidence`]), at least 1.
 
 use rayon::prelude::*;
 use simgap_effects::{Effect, Placed, free_laws, sites};
@@ -16,6 +17,7 @@ use simgap_estimate::{Candidate, EstimateError, Fit, linearise_at, score};
 use simgap_model::Location;
 
 use crate::candidate_model::{CandidateModel, add};
+use crate::coincidence::{Coincidence, coincidence};
 use crate::noise_model::NOISE_KNOWN;
 use crate::search::Search;
 
@@ -73,6 +75,8 @@ pub struct Other {
     pub left: f64,
     /// The free law that leaves least, where one was sought.
     pub law: Option<FreeLaw>,
+    /// Values of the best set that speak for one cause behind them.
+    pub coincidence: Option<Coincidence>,
 }
 
 /// Weighs the best set against a law of any shape. `base` holds no effect.
@@ -97,7 +101,10 @@ pub fn other(
         let of_law = law.left.powi(2) + relevant;
         log_odds += 0.5 * FOUND_LAW * (own / of_law).ln().max(0.0);
     }
+    let coincidence = coincidence(best, &search.space);
+    log_odds += coincidence.as_ref().map_or(0.0, |found| found.log_odds);
     Ok(Other {
+        coincidence,
         probability: 1.0 / (1.0 + (-log_odds).exp()),
         left,
         law,

@@ -2,22 +2,25 @@
 //!
 //! ```text
 //! single effects: by score; from many values; dynamics of parameters
+//! effects beside nominal parameters that are re-estimated
 //! pairs, sets of three: from the best sets so far, by score and from many values
 //! stretches of the records, each with a start of its own (multiple shooting)
 //! the best set: each effect removed, exchanged, grown, shrunk; one more added; until it stays
 //! ```
 //!
-//! A stage is left out where the best set leaves nothing but noise and no candidate's score could pay for its prior.
+//! A stage is left out where the best set leaves nothing but noise and no candidate's score could pay for its prior and for the
+//! values that it adjusts.
 
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
+use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at};
 
-use crate::candidate_model::{CandidateModel, name, rank, remove};
+use crate::candidate_model::{CandidateModel, is_nominal, name, rank, remove};
 use crate::marginal_likelihood::{NominalPrior, log_marginal_likelihood};
 use crate::model_space::ModelSpace;
-use crate::noise_model::{NOISE_KNOWN, NoiseModel, noise_variance, stepped};
+use crate::noise_model::{NOISE_KNOWN, NoiseModel, noise_variance, rounding_variance, stepped};
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -27,9 +30,10 @@ const FITTED: [usize; 3] = [18, 6, 4];
 const REFITTED: usize = 16;
 /// Candidates fitted in the place of each effect of the best set, and beside it.
 const EXCHANGED: usize = 8;
-const ADDED: usize = 4;
-/// Effects of a set at the most.
+const ADDED: usize = 8;
+/// Effects of a set at the most; wrong nominal parameters besides.
 const MOST_EFFECTS: usize = 3;
+const MOST_PARAMETERS: usize = 3;
 /// Rounds of changes to the best set.
 const ROUNDS: usize = 4;
 
@@ -126,15 +130,40 @@ impl<'a> Search<'a> {
         fitted
     }
 
-    /// Whether the best set leaves nothing but noise, and no candidate beside it could pay for its prior.
+    /// Whether nothing can be added to the best set, or nothing that could make it likelier.
     fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        if (self.budget.is_spent)() || best.effects().len() >= MOST_EFFECTS {
+        if (self.budget.is_spent)() || self.is_full(best) {
             return Ok(true);
         }
-        Ok(self.leaves_noise(best) && self.best_gain(best)? < self.space.price())
+        let left = best.fit.variance.iter().zip(self.unexplainable(best));
+        if left
+            .into_iter()
+            .all(|(left, floor)| *left < NOISE_KNOWN * floor)
+        {
+            return Ok(true);
+        }
+        Ok(self.leaves_noise(best) && self.most_promising(best)? < 0.0)
+    }
+
+    /// What no set beyond this one is expected to explain, mean square of each channel: the accuracy of the simulation, noise
+    /// of the inputs, and what the steps of the set round off.
+    pub(crate) fn unexplainable(&self, set: &CandidateModel) -> Vec<f64> {
+        let rounded = rounding_variance(self.problem, set.effects());
+        let floor = self.options.floor.iter().zip(self.problem.output_std());
+        let channels = floor.zip(rounded);
+        channels
+            .map(|((floor, std), rounded)| (floor * std).powi(2) + rounded)
+            .collect()
+    }
+
+    /// Whether a set holds as many effects as any set.
+    pub(crate) fn is_full(&self, set: &CandidateModel) -> bool {
+        let parameters = set.effects().iter().filter(|p| is_nominal(p)).count();
+        let others = set.effects().len() - parameters;
+        others + parameters.saturating_sub(MOST_PARAMETERS) >= MOST_EFFECTS
     }
 
     /// Noise of the sensors in what a set leaves, and what no set is expected to explain, mean square of each channel.
@@ -149,12 +178,19 @@ impl<'a> Search<'a> {
             .collect()
     }
 
-    /// Whether a set leaves nothing but noise.
+    /// Whether a set leaves nothing but noise. What a converter rounds off looks like noise, and is explained by its steps.
     fn leaves_noise(&self, set: &CandidateModel) -> bool {
-        let channels = set.fit.variance.iter().zip(self.noise_of(set));
-        channels
-            .into_iter()
-            .all(|(left, noise)| *left < NOISE_KNOWN * noise)
+        let beside = self.space.candidates.iter();
+        let beside = beside.filter(|(candidate, _)| !set.holds(candidate));
+        let steps = beside.filter_map(|(candidate, scale)| {
+            let values = candidate.effect.starts(scale).into_iter().next()?;
+            let placed = Placed::new(candidate.effect, candidate.at.clone(), values);
+            placed.action().is_stepped().then_some(placed)
+        });
+        let rounded = rounding_variance(self.problem, &steps.collect::<Vec<_>>());
+        let noise = self.noise_of(set).into_iter().zip(rounded);
+        let mut channels = set.fit.variance.iter().zip(noise);
+        channels.all(|(left, (noise, rounded))| *left < NOISE_KNOWN * (noise - rounded).max(0.0))
     }
 
     /// Sets of none to three effects, best first.
@@ -178,8 +214,13 @@ impl<'a> Search<'a> {
         }
         pool.extend(self.fit_dynamics_of_parameters(base, &pool, &linear));
         rank(&mut pool);
+        if !self.is_settled(&pool)? {
+            step("effects beside re-estimated parameters");
+            pool.extend(self.beside_recalibrated(base)?);
+            rank(&mut pool);
+        }
         let mut front: Vec<CandidateModel> = pool.clone();
-        front.retain(|set| !set.effects().is_empty());
+        front.retain(|set| !set.effects().is_empty() && !self.is_full(set));
         for (size, survivors) in SURVIVORS.iter().enumerate() {
             if self.is_settled(&pool)? {
                 return Ok(pool);
@@ -203,6 +244,7 @@ impl<'a> Search<'a> {
             pool.extend(next.iter().cloned());
             rank(&mut pool);
             front = next;
+            front.retain(|set| !self.is_full(set));
         }
         if !self.is_settled(&pool)? {
             step("single effects in stretches");
@@ -231,7 +273,7 @@ impl<'a> Search<'a> {
                 return Ok(());
             };
             (self.budget.progress)("changes to the best set");
-            if best.effects().len() < MOST_EFFECTS {
+            if !self.is_full(&best) {
                 pool.extend(self.extend(&best, ADDED)?);
             }
             let changed = (0..best.effects().len()).into_par_iter().map(|i| {

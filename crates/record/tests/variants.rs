@@ -4,7 +4,7 @@
 
 mod motion;
 
-use motion::{Expected, HALF, SINGLE, WHOLE, assert_holds, notes, options, path, read, refused};
+use motion::{Expected, WHOLE, assert_holds, notes, options, path, read, refused};
 use simgap_record::{ReadOptions, read_file};
 
 const FOLDER: &str = "variants";
@@ -130,7 +130,7 @@ fn val_arrow_files() {
         holds(name, &["u=u", "y=y"], WHOLE);
     }
     let half = Expected {
-        tolerance: HALF,
+        tolerance: motion::HALF,
         ..WHOLE
     };
     holds("duration-half.feather", &["u=u", "y=y"], half);
@@ -201,7 +201,7 @@ fn val_h5py_files() {
         "half.h5",
         &["u=u [kN]", "y=y [mm]"],
         Expected {
-            tolerance: HALF,
+            tolerance: motion::HALF,
             ..WHOLE
         },
     );
@@ -212,7 +212,7 @@ fn val_h5py_files() {
         assert!(told.contains(because), "{told}");
     }
     let single = Expected {
-        tolerance: SINGLE,
+        tolerance: motion::SINGLE,
         ..WHOLE
     };
     holds("records.h5", &["u=u [kN]", "y=y [mm]"], single);
@@ -246,7 +246,7 @@ fn val_asammdf_files() {
         "../plain.mf4",
         &map,
         Expected {
-            tolerance: SINGLE,
+            tolerance: motion::SINGLE,
             ..WHOLE
         },
     );

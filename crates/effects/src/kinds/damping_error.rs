@@ -3,6 +3,7 @@
 use simgap_model::{Location, NominalQuantity, same_pair};
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::prior::Prior;
 
 /// The dampers between two nodes differ from their nominal damping by a factor.
 pub(crate) struct DampingError;
@@ -34,6 +35,11 @@ impl Effect for DampingError {
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![1.05]]
+    }
+
+    /// A machine may lack the damper that its model was given for its friction.
+    fn prior(&self, _: usize, _: &SiteScale) -> Prior {
+        Prior::factor_or_nothing()
     }
 
     fn nominal_quantity(&self) -> Option<NominalQuantity> {

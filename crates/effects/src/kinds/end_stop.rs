@@ -17,9 +17,6 @@ use crate::equivalent::SOFT;
 /// Reference: \[Worden2001\], chapter 1.
 pub(crate) struct EndStop;
 
-/// A gap below this share of the range of the motion is none.
-const NO_GAP: f64 = 0.01;
-
 /// A contact whose damping force is below this share of its spring force has none to be seen.
 const ELASTIC: f64 = 0.02;
 /// Contact stiffnesses that a fit starts from, as multiples of the spring of the place.
@@ -139,16 +136,6 @@ impl Effect for EndStop {
         !scale.has_spring || both_sides || held || values[2] >= SOFT * scale.stiffness_n_per_m
     }
 
-    fn misnomer(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
-        let [low, high] = scale.displacement_range_m;
-        let nothing = NO_GAP * (high - low);
-        let mut gaps = ci95.iter().take(2);
-        let has_none = gaps.any(|[least, most]| *least <= 0.0 && *most < nothing);
-        // Where the model has no spring, a bumper that is touched at rest has no other name.
-        (has_none && scale.has_spring)
-            .then_some("a stop without a gap is a spring that is stiffer on that side")
-    }
-
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
         &[
             (
@@ -188,27 +175,5 @@ mod tests {
         };
         assert!(keeps(20.0 * high, 4e4, 0.0) && !keeps(20.0 * high, 2e4, 0.0));
         assert!(keeps(0.5 * high, 2e4, 0.0) && keeps(20.0 * high, 2e4, 1e-3));
-    }
-
-    #[test]
-    fn a_stop_without_a_gap_is_misnamed() {
-        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
-        let range = scale.displacement_range_m[1] - scale.displacement_range_m[0];
-        let of = |upper: [f64; 2]| {
-            EndStop.misnomer(&[upper, [5e-4, 6e-4], [1e4, 2e4], [0.0, 1e-3]], &scale)
-        };
-        assert!(of([0.0, 1e-3 * range]).is_some());
-        // A wide interval that holds zero says nothing about the gap; one away from zero says that there is one.
-        assert!(of([0.0, 0.1 * range]).is_none());
-        assert!(of([1e-3 * range, 2e-3 * range]).is_none());
-        let free = SiteScale {
-            has_spring: false,
-            ..scale
-        };
-        let bumper = EndStop.misnomer(
-            &[[0.0, 1e-3 * range], [5e-4, 6e-4], [1e4, 2e4], [0.0, 1e-3]],
-            &free,
-        );
-        assert!(bumper.is_none());
     }
 }

@@ -24,11 +24,6 @@ pub(crate) struct FlexibleSupport;
 /// Name of the mass of the support.
 const NAME: &str = "(support)";
 
-/// A support this many times stiffer is not moved.
-const OUT_OF_PROPORTION: f64 = 1e3;
-/// A support whose damping ratio is above this does not ring.
-const OVERDAMPED: f64 = 0.7;
-
 fn stand(model: &mut Model, at: &Location, [mass, stiffness, damping_ratio]: [f64; 3]) {
     let Location::Between(pair) = at else {
         return;
@@ -144,21 +139,6 @@ impl Effect for FlexibleSupport {
         starts
     }
 
-    /// One too stiff and too heavy to be moved, which rings by its start alone.
-    fn degenerate(&self, values: &[f64]) -> Vec<Vec<f64>> {
-        let rigid = [values[0], values[1]].map(|value| OUT_OF_PROPORTION * value);
-        vec![vec![rigid[0], rigid[1], values[2], 0.0, 0.0]]
-    }
-
-    fn doubt(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
-        let &[_, _, [least, _], ..] = ci95 else {
-            return None;
-        };
-        (least > OVERDAMPED).then_some(
-            "it is damped so much that it does not ring: a spring and a damper in series do about the same",
-        )
-    }
-
     fn turns_into(&self) -> &'static [&'static str] {
         &["stiffness_error", "damping_error"]
     }
@@ -225,19 +205,5 @@ impl Effect for FlexibleSupport {
 
     fn experiment(&self) -> &'static str {
         "an accelerometer on the support, with excitation up to its natural frequency"
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_support_that_does_not_ring_is_in_doubt() {
-        let scale = SiteScale::plain(1e-3, 0.1, 100.0);
-        let of = |ratio: [f64; 2]| FlexibleSupport.doubt(&[[1e5, 2e5], [1.0, 2.0], ratio], &scale);
-        assert!(of([0.96, 1.22]).is_some());
-        assert!(of([0.02, 0.05]).is_none());
-        assert!(of([0.02, 2.0]).is_none());
     }
 }

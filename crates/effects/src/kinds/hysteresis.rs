@@ -4,7 +4,6 @@ use simgap_integrate::exact::{Followed, ForceLaw, MemberMotion};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::sight::is_beyond_motion;
 
 /// A spring that remembers its way and yields (Bouc-Wen).
 ///
@@ -214,24 +213,6 @@ impl Effect for Hysteresis {
             exponent: values[3],
             start: values[4],
         }))
-    }
-
-    fn doubt(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
-        let &[_, _, loop_share, exponent, _] = ci95 else {
-            return None;
-        };
-        // Not where the interval spans the whole range: there the data are silent.
-        let is_one = |[low, high]: [f64; 2]| low <= 1.0 && (1.0..2.0).contains(&high);
-        (is_one(loop_share) && is_one(exponent))
-            .then_some("its loop is the simplest of its family but for the intervals: Dahl's")
-    }
-
-    fn misnomer(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
-        let &[_, displacement, ..] = ci95 else {
-            return None;
-        };
-        is_beyond_motion(displacement, scale)
-            .then_some("it yields beyond the motion: a spring that begins stretched")
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {

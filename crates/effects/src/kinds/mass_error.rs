@@ -54,10 +54,6 @@ impl Effect for MassError {
         }))
     }
 
-    fn known_to_factor(&self) -> Option<f64> {
-        Some(2.0)
-    }
-
     fn experiment(&self) -> &'static str {
         "broadband excitation well above the natural frequency, where inertia dominates"
     }

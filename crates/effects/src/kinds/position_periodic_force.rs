@@ -126,15 +126,6 @@ impl Effect for PositionPeriodicForce {
         values[2] <= LONGEST * (high - low)
     }
 
-    fn doubt(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
-        let [low, high] = scale.displacement_range_m;
-        let &[_, _, [_, longest]] = ci95 else {
-            return None;
-        };
-        (longest > high - low)
-            .then_some("its period is as long as the travel: any curve looks like a part of it")
-    }
-
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
         &[
             (

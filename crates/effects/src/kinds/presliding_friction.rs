@@ -4,7 +4,6 @@ use simgap_integrate::exact::{Followed, ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::sight::is_beyond_motion;
 
 /// Friction that gives like a spring, with a damper beside it, before it slides.
 ///
@@ -151,14 +150,6 @@ impl Effect for PreslidingFriction {
             damping_time_s: values[2],
             start: values[3],
         }))
-    }
-
-    fn misnomer(&self, ci95: &[[f64; 2]], scale: &SiteScale) -> Option<&'static str> {
-        let &[_, displacement, ..] = ci95 else {
-            return None;
-        };
-        is_beyond_motion(displacement, scale)
-            .then_some("it slides beyond the motion: a spring that begins stretched")
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {

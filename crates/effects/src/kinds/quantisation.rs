@@ -31,8 +31,8 @@ impl SignalMap for Steps {
         signal.values.iter().map(rounded).collect()
     }
 
-    fn is_stepped(&self) -> bool {
-        true
+    fn step(&self) -> Option<f64> {
+        Some(self.step)
     }
 
     fn is_lossy(&self) -> bool {

@@ -55,10 +55,6 @@ impl Effect for StiffnessError {
         }))
     }
 
-    fn known_to_factor(&self) -> Option<f64> {
-        Some(2.0)
-    }
-
     fn experiment(&self) -> &'static str {
         "slow or static loading, where the spring carries the force alone"
     }

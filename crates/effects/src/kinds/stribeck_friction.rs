@@ -128,16 +128,6 @@ impl Effect for StribeckFriction {
         }))
     }
 
-    fn doubt(&self, ci95: &[[f64; 2]], _: &SiteScale) -> Option<&'static str> {
-        let &[[low, high], [other_low, other_high], _] = ci95 else {
-            return None;
-        };
-        let is_seen = low.is_finite() && high.is_finite() && other_high.is_finite();
-        (is_seen && low <= other_high && other_low <= high).then_some(
-            "its two levels of friction are the same but for their intervals: one level would do",
-        )
-    }
-
     fn experiment(&self) -> &'static str {
         "slow motion through several speeds below the Stribeck speed, forwards and back"
     }

@@ -20,17 +20,33 @@ const EVEN: f64 = 0.7;
 /// Largest a of (1): a discrepancy that is correlated over more than ten samples is a motion.
 const MOST_COLOUR: f64 = 0.92;
 
-/// Which channels effects store in steps.
-#[must_use]
-pub fn stepped(problem: &Problem, effects: &[Placed]) -> Vec<bool> {
-    let at = |channel: &str| {
-        effects.iter().any(|placed| {
-            placed.at == Location::Channel(channel.to_string())
-                && matches!(placed.action(), Action::Sampling(map) if map.is_stepped())
+/// The step in which effects store each channel.
+fn steps(problem: &Problem, effects: &[Placed]) -> Vec<Option<f64>> {
+    let of = |channel: &str| {
+        effects.iter().find_map(|placed| match placed.action() {
+            Action::Sampling(map) if placed.at == Location::Channel(channel.into()) => map.step(),
+            _ => None,
         })
     };
     let outputs = problem.model.outputs.iter();
-    outputs.map(|output| at(&output.channel)).collect()
+    outputs.map(|output| of(&output.channel)).collect()
+}
+
+/// Which channels effects store in steps.
+#[must_use]
+pub fn stepped(problem: &Problem, effects: &[Placed]) -> Vec<bool> {
+    let steps = steps(problem, effects).into_iter();
+    steps.map(|step| step.is_some()).collect()
+}
+
+/// Variance of what effects round off in each channel, q²/12 for a step q: within it, values that are rounded right say
+/// nothing.
+#[must_use]
+pub fn rounding_variance(problem: &Problem, effects: &[Placed]) -> Vec<f64> {
+    let steps = steps(problem, effects).into_iter();
+    steps
+        .map(|step| step.unwrap_or(0.0).powi(2) / 12.0)
+        .collect()
 }
 
 /// Whether a discrepancy is noise of a sensor and nothing else, (1).

@@ -42,11 +42,22 @@ impl Search<'_> {
         Ok(self.fit_all(&starts, linear))
     }
 
-    /// The gain that the best candidate beside a set promises.
-    pub(crate) fn best_gain(&self, set: &CandidateModel) -> Result<f64, EstimateError> {
+    /// The most that a further effect promises to bring: its gain, less its prior and what its values cost that the
+    /// gain lets them be known by, ½ ln(1 + 2 gain) each.
+    pub(crate) fn most_promising(&self, set: &CandidateModel) -> Result<f64, EstimateError> {
         let linear = linearise_at(self.problem, &set.fit, &self.options)?;
-        let scores = self.scores(set, &linear);
-        Ok(scores.first().map_or(0.0, |score| score.gain))
+        let runs = self.problem.runs.len();
+        let promises = self.scores(set, &linear).into_iter().map(|score| {
+            let effect = score.start.effect;
+            let parameters = effect.parameters().iter().enumerate();
+            let adjusted = parameters.filter(|(k, _)| !effect.is_chosen(*k));
+            let values: usize = adjusted
+                .map(|(_, parameter)| if parameter.per_record { runs } else { 1 })
+                .sum();
+            let known = 0.5 * values as f64 * (2.0 * score.gain.max(0.0)).ln_1p();
+            score.gain + self.space.log_prior_of(effect) - known
+        });
+        Ok(promises.fold(f64::NEG_INFINITY, f64::max))
     }
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.

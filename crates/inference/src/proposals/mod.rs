@@ -4,4 +4,5 @@ mod add;
 mod grow;
 mod multiple_shooting;
 mod multistart;
+mod recalibrated;
 mod unite;

@@ -1,0 +1,171 @@
+//! Effects beside nominal parameters that are far off.
+//!
+//! On a real machine several nominal values are off at once, and what is missing from the model shows only once they are
+//! re-estimated: dry friction that a damper was made to stand for fits with the wrong sign beside that damper. Effects are
+//! looked for beside nominal parameters under a wide prior. What is found is then a proposal like any other: parameters that
+//! have left what the model states of them become effects of the set, with the prior of a wrong one. Which of them is found
+//! both ways: one after the other is added as long as the set grows likelier by it; all are, and go again one by one.
+
+use rayon::prelude::*;
+use simgap_effects::{Family, Placed};
+use simgap_estimate::{EstimateError, FitOptions, Start, linearise_at};
+
+use crate::candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
+use crate::search::Search;
+
+/// Standard deviation of the wide prior.
+const WIDE_STD: f64 = 0.5;
+/// Effects that are fitted alone, and beside each of the best sets.
+const FITTED: usize = 12;
+const BESIDE: usize = 6;
+/// Sets that are extended, and sets that are proposed.
+const EXTENDED: usize = 3;
+const PROPOSED: usize = 12;
+/// Sets whose parameters are removed again one by one.
+const PRUNED: usize = 4;
+/// Stated standard deviations from which a parameter has left what the model states of it.
+const LEFT: f64 = 2.0;
+/// Parameters that are named at the most.
+const MOST_OFF: usize = 6;
+
+impl Search<'_> {
+    /// Sets of no effect or more, each with the nominal parameters that are off beside it.
+    pub(crate) fn beside_recalibrated(
+        &self,
+        base: &CandidateModel,
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        if base.fit.estimate.nominal.is_empty() {
+            return Ok(vec![]);
+        }
+        let wide = Search {
+            options: FitOptions {
+                nominal_std: Some(WIDE_STD),
+                ..self.options.clone()
+            },
+            space: self
+                .space
+                .of_families(|family| family != Family::NominalParameter),
+            ..*self
+        };
+        let Ok(recalibrated) = wide.fit(&base.fit.estimate) else {
+            return Ok(vec![]);
+        };
+        let linear = linearise_at(self.problem, &recalibrated.fit, &wide.options)?;
+        let mut found = wide.extend_at(&recalibrated, &linear, FITTED)?;
+        found.extend(wide.fit_joint(&recalibrated, &linear)?);
+        found.push(recalibrated);
+        rank(&mut found);
+        let mut larger = vec![];
+        for set in found.iter().take(EXTENDED) {
+            if !self.is_full(set) {
+                larger.extend(wide.extend(set, BESIDE)?);
+            }
+        }
+        found.extend(larger);
+        rank(&mut found);
+        let found = found
+            .into_iter()
+            .filter(|set| set.log_marginal_likelihood.is_finite());
+        let found: Vec<CandidateModel> = found.take(PROPOSED).collect();
+        let starts: Vec<Start> = found
+            .iter()
+            .map(|set| self.name_parameters(&set.fit.estimate))
+            .collect();
+        let proposed = starts.par_iter().filter_map(|start| self.fit(start).ok());
+        let mut proposed: Vec<CandidateModel> = proposed.collect();
+        rank(&mut proposed);
+        let both_ways = proposed
+            .iter()
+            .take(PRUNED)
+            .flat_map(|set| self.prune_parameters(set));
+        let added = found
+            .iter()
+            .take(PRUNED)
+            .flat_map(|set| self.add_parameters(&set.fit.estimate));
+        let both_ways: Vec<CandidateModel> = both_ways.chain(added).collect();
+        proposed.extend(both_ways);
+        Ok(proposed)
+    }
+
+    /// The effects of a start beside nominal parameters as stated, then with those that are off, the one that helps most
+    /// first, as long as the set grows likelier.
+    fn add_parameters(&self, start: &Start) -> Vec<CandidateModel> {
+        let mut off = self.off(start);
+        let mut stated = start.clone();
+        for placed in &mut stated.nominal {
+            placed.values.fill(1.0);
+        }
+        let Ok(first) = self.fit(&stated) else {
+            return vec![];
+        };
+        let mut grown = vec![first];
+        while let Some(last) = grown.last() {
+            let larger = off.par_iter().filter_map(|placed| {
+                let start = add(&last.fit.estimate, placed.clone());
+                self.fit(&start).ok()
+            });
+            let best = likeliest(larger.collect());
+            let Some(best) = best.filter(|best| best.log_posterior() > last.log_posterior()) else {
+                break;
+            };
+            off.retain(|placed| {
+                best.effects()
+                    .iter()
+                    .all(|known| name(known) != name(placed))
+            });
+            grown.push(best);
+        }
+        grown
+    }
+
+    /// Nominal parameters that have left what the model states of them, the farthest first.
+    fn off(&self, start: &Start) -> Vec<Placed> {
+        let apart = |placed: &Placed| {
+            let std = self.problem.stated_std(placed);
+            let values = placed.values.iter();
+            values
+                .map(|value| (value - 1.0).abs() / std)
+                .fold(0.0, f64::max)
+        };
+        let mut off: Vec<Placed> = start.nominal.clone();
+        off.retain(|placed| apart(placed) > LEFT);
+        off.sort_by(|a, b| apart(b).total_cmp(&apart(a)));
+        off.truncate(MOST_OFF);
+        off
+    }
+
+    /// A start in which every nominal parameter that has left what the model states of it is an effect.
+    fn name_parameters(&self, start: &Start) -> Start {
+        let off = self.off(start).into_iter();
+        let mut named = off.fold(start.clone(), |named, placed| add(&named, placed));
+        for placed in &mut named.nominal {
+            placed.values.fill(1.0);
+        }
+        named
+    }
+
+    /// A set with one parameter less, and again, as long as it is likelier so.
+    fn prune_parameters(&self, set: &CandidateModel) -> Vec<CandidateModel> {
+        let mut pruned: Vec<CandidateModel> = vec![];
+        loop {
+            let last = pruned.last().unwrap_or(set);
+            let parameters = (0..last.effects().len()).filter(|&i| is_nominal(&last.effects()[i]));
+            let parameters: Vec<usize> = parameters.collect();
+            let smaller = parameters.par_iter().filter_map(|&i| {
+                let start = remove(&last.fit.estimate, i);
+                self.fit(&start).ok()
+            });
+            let best = likeliest(smaller.collect());
+            match best.filter(|best| best.log_posterior() > last.log_posterior()) {
+                Some(best) => pruned.push(best),
+                None => return pruned,
+            }
+        }
+    }
+}
+
+fn likeliest(sets: Vec<CandidateModel>) -> Option<CandidateModel> {
+    let by_posterior =
+        |a: &CandidateModel, b: &CandidateModel| a.log_posterior().total_cmp(&b.log_posterior());
+    sets.into_iter().max_by(by_posterior)
+}
