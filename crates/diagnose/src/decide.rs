@@ -53,32 +53,6 @@ pub(crate) fn decide(
         Some(base) => base.clone(),
         None => search.fit(first)?,
     };
-        let mut p: Vec<_> = pool.iter().collect();
-        p.sort_by(|a, b| b.log_posterior().total_cmp(&a.log_posterior()));
-        for s in p.iter().take(8) {
-            eprintln!(
-                "DBG pool {:.2} V {:.2} dev {:?} var {:?} {}",
-                s.log_posterior(),
-                s.fit.misfit,
-                s.fit
-                    .estimate
-                    .nominal
-                    .iter()
-                    .map(|p| format!("{:.3}", p.values[0]))
-                    .collect::<Vec<_>>(),
-                s.fit.variance,
-                s.effects()
-                    .iter()
-                    .map(|e| format!("{}{:?}", name(e), e.values))
-                    .collect::<Vec<_>>()
-                    .join("; ")
-            );
-        }
-        eprintln!(
-            "DBG share {:?} floor {:?} rms {:?}",
-            search.options.effective_share, search.options.floor, rms
-        );
-    }
     let posterior = model_posterior(search, pool, &rms)?;
     let best = posterior.best().unwrap_or(&base).clone();
     let gap = Gap {

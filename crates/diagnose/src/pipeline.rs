@@ -259,43 +259,6 @@ fn finish(
         notes.push(hidden.into());
     }
     notes.extend(quality_notes(request, data));
-        for s in fitted_sets(&decision.posterior).iter().take(12) {
-            let e: Vec<String> = s
-                .effects
-                .iter()
-                .map(|e| format!("{}@{:?}{:?}", e.kind, e.at, e.parameters))
-                .collect();
-            eprintln!(
-                "DBG lnZ {:.2} lnp {:.2} p {:.4} V {:.2} d {} var {:.4?} {}",
-                s.log_marginal_likelihood,
-                s.log_prior,
-                s.probability,
-                s.misfit,
-                s.dimensions,
-                s.variance,
-                e.join("; ")
-            );
-        }
-        eprintln!(
-            "DBG V {:?} {:?} complete {} other {:.3} refuted {:?} u {:?} law {:?}",
-            verdict.status,
-            verdict
-                .effects
-                .iter()
-                .map(|e| (&e.kind, e.probability))
-                .collect::<Vec<_>>(),
-            verdict.complete,
-            verdict.other.probability,
-            verdict.refuted,
-            decision.other.left,
-            decision
-                .other
-                .law
-                .as_ref()
-                .map(|l| (l.placed.effect.kind(), l.left))
-        );
-        eprintln!("DBG gap {:?}", checked.gap);
-    }
     Ok(Outcome {
         corrected: corrected_model(request.model, &placed),
         series: series(

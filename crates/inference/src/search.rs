@@ -30,7 +30,7 @@ const FITTED: [usize; 3] = [18, 6, 4];
 const REFITTED: usize = 16;
 /// Candidates fitted in the place of each effect of the best set, and beside it.
 const EXCHANGED: usize = 8;
-const ADDED: usize = 8;
+const ADDED: usize = 4;
 /// Effects of a set at the most; wrong nominal parameters besides.
 const MOST_EFFECTS: usize = 3;
 const MOST_PARAMETERS: usize = 3;

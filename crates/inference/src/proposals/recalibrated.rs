@@ -19,10 +19,10 @@ const WIDE_STD: f64 = 0.5;
 const FITTED: usize = 12;
 const BESIDE: usize = 6;
 /// Sets that are extended, and sets that are proposed.
-const EXTENDED: usize = 3;
-const PROPOSED: usize = 12;
+const EXTENDED: usize = 1;
+const PROPOSED: usize = 6;
 /// Sets whose parameters are removed again one by one.
-const PRUNED: usize = 4;
+const PRUNED: usize = 2;
 /// Stated standard deviations from which a parameter has left what the model states of it.
 const LEFT: f64 = 2.0;
 /// Parameters that are named at the most.
