@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use simgap_effects::{Family, Placed};
 use simgap_estimate::{Candidate, Fit, Owner, Score, Start};
 
+use crate::marginal_likelihood::NominalPrior;
+
 /// A fitted set of effects.
 #[derive(Clone)]
 pub struct CandidateModel {
@@ -118,13 +120,11 @@ pub(crate) fn add_scored(start: &Start, score: Score) -> Start {
     next
 }
 
-/// A start without one of its effects. A nominal parameter gets its narrow prior back, unless nominal
-/// parameters are held exactly.
-#[must_use]
-pub fn remove(start: &Start, index: usize) -> Start {
+/// A start without one of its effects. A nominal parameter gets its narrow prior back, unless the others are held exactly.
+pub(crate) fn remove(start: &Start, index: usize, nominal: NominalPrior) -> Start {
     let mut next = start.clone();
     let mut removed = next.effects.remove(index);
-    if is_nominal(&removed) && !next.nominal.is_empty() {
+    if is_nominal(&removed) && nominal == NominalPrior::Wrong {
         let parameters = removed.effect.parameters().iter();
         removed.values = parameters.map(|p| p.neutral.unwrap_or(0.0)).collect();
         next.nominal.push(removed);
@@ -133,8 +133,8 @@ pub fn remove(start: &Start, index: usize) -> Start {
 }
 
 /// A start with another effect in the place of one of its own.
-pub(crate) fn replace(start: &Start, index: usize, effect: Placed) -> Start {
-    let mut next = remove(start, index);
+pub(crate) fn replace(start: &Start, index: usize, effect: Placed, nominal: NominalPrior) -> Start {
+    let mut next = remove(start, index, nominal);
     next.nominal.retain(|p| name(p) != name(&effect));
     next.effects.insert(index, effect);
     next

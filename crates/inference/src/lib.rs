@@ -22,7 +22,7 @@ mod other;
 mod proposals;
 mod search;
 
-pub use candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
+pub use candidate_model::{CandidateModel, add, is_nominal, name, rank};
 pub use coincidence::Coincidence;
 pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterior};
 pub use model_space::ModelSpace;

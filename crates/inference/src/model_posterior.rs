@@ -188,7 +188,7 @@ impl Relevance {
                 let known = kept.iter().chain(&rest).find(|other| other.key() == key);
                 let mut simpler = match known {
                     Some(known) => vec![known.clone()],
-                    None => vec![search.fit(&remove(&set.fit.estimate, i))?],
+                    None => vec![search.fit(&remove(&set.fit.estimate, i, search.nominal))?],
                 };
                 // A law beyond a special case of it is held to the same.
                 simpler.extend(search.shrink(&set, i));
@@ -222,7 +222,11 @@ fn moved(
         most_steps: 0,
         ..search.options.clone()
     };
-    let rest = fit(search.problem, &remove(&set.fit.estimate, index), &held)?;
+    let rest = fit(
+        search.problem,
+        &remove(&set.fit.estimate, index, search.nominal),
+        &held,
+    )?;
     let runs = || set.fit.discrepancy.iter().zip(&rest.discrepancy);
     let channels = 0..search.problem.model.outputs.len();
     let of_channel = channels.map(|c| {

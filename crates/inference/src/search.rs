@@ -279,7 +279,7 @@ impl<'a> Search<'a> {
             let changed = (0..best.effects().len()).into_par_iter().map(|i| {
                 let mut changed = self.grow(&best, i)?;
                 changed.extend(self.shrink(&best, i));
-                if let Ok(smaller) = self.fit(&remove(&best.fit.estimate, i)) {
+                if let Ok(smaller) = self.fit(&remove(&best.fit.estimate, i, self.nominal)) {
                     changed.extend(self.extend(&smaller, EXCHANGED)?);
                     changed.push(smaller);
                 }

@@ -42,6 +42,29 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
             });
         }
     }
+    for c in &cases {
+        eprintln!(
+            "{} {} {} other {:?} status {:?} complete {} rivals {:?} next {:?}",
+            c.rate_hz,
+            c.reading,
+            kinds(&c.outcome.diagnosis.verdict.effects),
+            c.outcome.diagnosis.verdict.other.probability,
+            c.outcome.diagnosis.verdict.status,
+            c.outcome.diagnosis.verdict.complete,
+            c.outcome
+                .diagnosis
+                .verdict
+                .effects
+                .iter()
+                .map(|e| e
+                    .indistinguishable
+                    .iter()
+                    .map(|r| format!("{} {}", r.kind, r.at))
+                    .collect::<Vec<_>>())
+                .collect::<Vec<_>>(),
+            c.outcome.diagnosis.next_experiment
+        );
+    }
     let mut blocks = vec![
         Block::Text(format!(
             "Records of the mold at {EXCITATION_HZ} Hz were rebuilt from the printed tables, once with every other sample \

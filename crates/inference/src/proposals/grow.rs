@@ -7,6 +7,7 @@ use simgap_estimate::{Base, EstimateError, Start, linearise_at, score_outright};
 use simgap_model::{GROUND, Location};
 
 use crate::candidate_model::{CandidateModel, add_scored, is_nominal, remove, replace};
+use crate::marginal_likelihood::NominalPrior;
 use crate::search::Search;
 
 /// Hidden masses are fitted from this many of the values at which they act as the parameter does.
@@ -113,7 +114,8 @@ impl Search<'_> {
                 let shapes = candidate.effect.grown_from(kind, &old.values, &scale);
                 shapes.into_iter().map(move |values| {
                     let grown = Placed::new(candidate.effect, candidate.at.clone(), values);
-                    without_limits(replace(&base.fit.estimate, index, grown.clone()), &grown)
+                    let start = replace(&base.fit.estimate, index, grown.clone(), self.nominal);
+                    without_limits(start, &grown, self.nominal)
                 })
             })
             .collect()
@@ -126,10 +128,10 @@ pub(crate) fn turns_into((dynamics, at): (&dyn Effect, &Location), limit: &Place
 }
 
 /// A start without the other parameters that an effect of it turns into: it takes the place of all.
-fn without_limits(mut start: Start, dynamics: &Placed) -> Start {
+fn without_limits(mut start: Start, dynamics: &Placed, nominal: NominalPrior) -> Start {
     let is_limit = |placed: &Placed| turns_into((dynamics.effect, &dynamics.at), placed);
     while let Some(i) = start.effects.iter().position(is_limit) {
-        start = remove(&start, i);
+        start = remove(&start, i, nominal);
     }
     start
 }

@@ -152,7 +152,7 @@ impl Search<'_> {
             let parameters = (0..last.effects().len()).filter(|&i| is_nominal(&last.effects()[i]));
             let parameters: Vec<usize> = parameters.collect();
             let smaller = parameters.par_iter().filter_map(|&i| {
-                let start = remove(&last.fit.estimate, i);
+                let start = remove(&last.fit.estimate, i, self.nominal);
                 self.fit(&start).ok()
             });
             let best = likeliest(smaller.collect());
