@@ -80,6 +80,8 @@ pub(super) fn octaves(scale: &SiteScale) -> impl Iterator<Item = f64> + use<> {
 const LIGHTEST: f64 = 1e-5;
 /// With more damping an attached mass does not vibrate.
 const RINGS: f64 = 1.0;
+/// Share of its amplitude, about, that a mode loses along a record at the least: one that nothing damps is a tone.
+const DIES_AWAY: f64 = 0.1;
 
 impl Effect for AttachedMode {
     fn kind(&self) -> &'static str {
@@ -162,11 +164,12 @@ impl Effect for AttachedMode {
 
     /// A lighter one is no mass but a force that dies away, carried by a start kilometres off; one that does not
     /// ring is a force that lags the motion, and no mode; nor does a record show one above half its sample rate, or one that
-    /// takes longer than the record to swing once.
+    /// takes longer than the record to swing once, or that does not die away along it.
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         values[0] >= LIGHTEST * scale.mass_kg
             && values[1] < 0.5 / scale.time_step_s
             && values[1] * scale.duration_s > 1.0
+            && values[2] * TAU * values[1] * scale.duration_s > DIES_AWAY
             && values[2] < RINGS
     }
 
