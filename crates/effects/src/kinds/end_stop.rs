@@ -101,7 +101,7 @@ impl Effect for EndStop {
             let stiffness = harder * scale.stiffness_n_per_m;
             let held = 2.0 * CONTACT_DAMPING * (scale.mass_kg / stiffness).sqrt();
             let held = if held.is_finite() { held } else { 0.0 };
-            for share in [0.5, 0.75, 0.97] {
+            for share in [0.5, 0.75, 0.85] {
                 let stop = share * reach;
                 starts.push(vec![stop, stop, stiffness, held]);
                 if high > 0.0 {

@@ -1,6 +1,7 @@
 //! An input reaches the plant in held values.
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
+use crate::prior::{Prior, usual_prior};
 use crate::signal_map::{Retiming, Sampled};
 
 /// An input reaches the plant in held values: a set point that a controller or a bus renews only every T, and
@@ -76,6 +77,17 @@ impl Effect for HeldInput {
                 Parameter::size("hold_time_s", "s", 0.0, f64::INFINITY),
                 Parameter::shape("hold_start_s", "s", 0.0, f64::INFINITY),
             ]
+        }
+    }
+
+    /// The holds begin anywhere within the first of them.
+    fn prior(&self, place: usize, scale: &SiteScale) -> Prior {
+        let longest = LONG.iter().copied().max().unwrap_or(1) as f64;
+        match place {
+            1 => Prior::Uniform {
+                width: longest * scale.time_step_s,
+            },
+            _ => usual_prior(self, place, scale),
         }
     }
 
