@@ -268,7 +268,8 @@ fn verify_a_direction_the_data_do_not_see_has_an_interval_that_says_nothing() {
     };
     let blind = fitted(effects.clone());
     for interval in blind.intervals.iter().map(|i| i[0]) {
-        assert_eq!(interval.ci95[0], 0.0, "{interval:?}");
+        // A gain may have the wrong sign.
+        assert!(interval.ci95[0] <= 0.0, "{interval:?}");
         assert!(interval.ci95[1] > 10.0 * interval.value, "{interval:?}");
     }
     effects.pop();

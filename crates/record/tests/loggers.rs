@@ -334,7 +334,9 @@ fn verify_the_contract_stays_strict_unless_asked() {
         );
     }
     let mended = read_file(&path, &wanted().with_mend(Mend::Always)).unwrap();
-    assert_eq!(mended.record.require("u").unwrap().values[5], row(4)[1]);
+    // On the line of its neighbours, where the row that was spoilt lay.
+    let filled = mended.record.require("u").unwrap().values[5];
+    assert!((filled - row(5)[1]).abs() < 1e-12, "{filled}");
     // A map alone is not a guess to be told about the layout.
     std::fs::write(&path, &good).unwrap();
     let reading = read_file(&path, &wanted().with_map(map())).unwrap();

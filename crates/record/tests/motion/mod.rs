@@ -99,14 +99,11 @@ pub(crate) fn assert_holds(reading: &Reading, name: &str, expected: Expected) {
                 "{name}: u {k} is {off} off"
             );
         }
-        let held = if expected.lost == Some(k) {
-            t - expected.step_s
-        } else {
-            t
-        };
-        let off = (y.values[k] - travel(held)).abs();
+        // A lost sample is filled by the cubic through its neighbours, off by (ωh)⁴/6 of the motion: 5 Hz, 10 ms.
+        let filled = if expected.lost == Some(k) { 2e-3 } else { 0.0 };
+        let off = (y.values[k] - travel(t)).abs();
         assert!(
-            off <= 2.0 * expected.tolerance,
+            off <= 2.0 * (expected.tolerance + filled),
             "{name}: y {k} is {off} off"
         );
     }
