@@ -9,7 +9,7 @@
 use simgap_effects::{Placed, catalogue};
 use simgap_estimate::{Fit, FitOptions, Problem, Start, fit, fit_initial_states};
 use simgap_inference::noise_model::whitening;
-use simgap_inference::{Budget, ModelSpace, NoiseModel, Search, is_nominal};
+use simgap_inference::{Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, is_nominal};
 use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
 
@@ -23,9 +23,6 @@ use crate::locate::Located;
 use crate::outcome::{corrected_model, series};
 use crate::sets::{FittedSet, fitted_sets};
 use crate::{DiagnoseError, Status, describe, locate};
-
-/// Prior on nominal parameters while they are re-estimated alone: known to a factor of about two.
-const RECALIBRATION_STD: f64 = 0.5;
 
 /// What is asked.
 pub struct Request<'a> {
@@ -135,8 +132,7 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let least = pool
         .iter()
         .min_by(|a, b| a.fit.misfit.total_cmp(&b.fit.misfit));
-    let least = &least.unwrap_or(&base).fit;
-    let noise = noise.with_colour_of(least);
+    let noise = noise.with_colour_of(&least.unwrap_or(&base).fit);
     let mut pool = search.refit(&pool, &noise);
     search.refine(&mut pool)?;
 

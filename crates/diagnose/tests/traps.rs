@@ -145,21 +145,17 @@ fn verify_a_heavier_mass_is_not_taken_for_one_on_a_spring() {
     }
 }
 
-/// A spring that is gone and a stop on either side are play. Where play is not looked for, a spring of two rates
-/// draws the same force; it is put on the member that has the play, and nothing besides is blamed.
+/// A spring that is gone and a stop on either side are play. Where play is not looked for, they are not named as
+/// if they were the cause, and nothing but the member that has the play is blamed.
 #[test]
-fn verify_a_spring_that_is_gone_is_put_on_its_member() {
+fn verify_a_law_is_not_made_of_a_spring_that_is_gone() {
     let truth = [placed("backlash", ground(), &[4e-4])];
     let outcome = diagnosed(&truth, &["backlash"]);
     let verdict = &outcome.diagnosis.verdict;
     let elsewhere = verdict.effects.iter().filter(|e| e.at != ground());
     assert_eq!(elsewhere.count(), 0, "{verdict:?}");
-    let gap = &outcome.diagnosis.gap;
-    let is_same_force = gap.corrected < 1.05 * gap.noise_floor;
-    assert!(
-        verdict.status == Status::Unknown || !verdict.complete || is_same_force,
-        "{verdict:?} {gap:?}"
-    );
+    let honest = verdict.status == Status::Unknown || !verdict.complete;
+    assert!(honest, "{verdict:?}");
 }
 
 /// A damper of the model that is off damps alike in both directions. Where dampers are not looked for, a law by

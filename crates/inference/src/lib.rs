@@ -28,4 +28,5 @@ pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterio
 pub use model_space::ModelSpace;
 pub use noise_model::NoiseModel;
 pub use other::{FreeLaw, Gap, Other, other};
+pub use proposals::RECALIBRATION_STD;
 pub use search::{Budget, Search};

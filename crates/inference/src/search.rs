@@ -152,11 +152,14 @@ impl<'a> Search<'a> {
     /// of the inputs, and what the steps of the set round off.
     pub(crate) fn unexplainable(&self, set: &CandidateModel) -> Vec<f64> {
         let rounded = rounding_variance(self.problem, set.effects());
-        let floor = self.options.floor.iter().zip(self.problem.output_std());
-        let channels = floor.zip(rounded);
-        channels
-            .map(|((floor, std), rounded)| (floor * std).powi(2) + rounded)
-            .collect()
+        let channels = self.floor_variance().zip(rounded);
+        channels.map(|(floor, rounded)| floor + rounded).collect()
+    }
+
+    /// What no set is expected to explain, mean square of each channel.
+    fn floor_variance(&self) -> impl Iterator<Item = f64> + '_ {
+        let channels = self.options.floor.iter().zip(self.problem.output_std());
+        channels.map(|(floor, std)| (floor * std).powi(2))
     }
 
     /// Whether a set holds as many effects as any set.
@@ -171,11 +174,8 @@ impl<'a> Search<'a> {
     pub fn noise_of(&self, set: &CandidateModel) -> Vec<f64> {
         let stepped = stepped(self.problem, set.effects());
         let noise = noise_variance(&set.fit.discrepancy, &stepped);
-        let floor = self.options.floor.iter().zip(self.problem.output_std());
-        let channels = noise.iter().zip(floor);
-        channels
-            .map(|(noise, (floor, std))| noise + (floor * std).powi(2))
-            .collect()
+        let channels = noise.iter().zip(self.floor_variance());
+        channels.map(|(noise, floor)| noise + floor).collect()
     }
 
     /// Whether a set leaves nothing but noise. What a converter rounds off looks like noise, and is explained by its steps.

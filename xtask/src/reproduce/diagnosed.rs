@@ -77,25 +77,30 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     })
 }
 
-/// What the answers amount to, as they are.
+/// What the answers amount to; an error where the two readings are told apart at the slow rate or are not at the fast one.
 fn story(cases: &[Case]) -> Result<String, ReproduceError> {
     let [slow_timing, slow_support, fast_timing, fast_support] = cases else {
         return Err(ReproduceError::Story("two readings at two rates"));
     };
     let named = |case: &Case| kinds(&case.outcome.diagnosis.verdict.effects);
-    let are_alike = |one: &Case, other: &Case| {
-        if named(one) == named(other) {
-            format!("one answer under both truths, {}", named(one))
-        } else {
-            format!(
-                "{} where the truth is an alternation and {} where it is the support",
-                named(one),
-                named(other)
-            )
-        }
+    let alternates = |case: &Case| {
+        let mut effects = case.outcome.diagnosis.verdict.effects.iter();
+        effects.any(|effect| effect.kind == "alternating_timing")
     };
-    let at_slow = are_alike(slow_timing, slow_support);
-    let at_fast = are_alike(fast_timing, fast_support);
+    if named(slow_timing) != named(slow_support) || !alternates(slow_timing) {
+        return Err(ReproduceError::Story(
+            "both readings get one answer at 100 Hz",
+        ));
+    }
+    if !alternates(fast_timing) || alternates(fast_support) {
+        return Err(ReproduceError::Story("the two readings part at 500 Hz"));
+    }
+    let at_slow = format!("one answer under both truths, {}", named(slow_timing));
+    let at_fast = format!(
+        "{} where the truth is an alternation and {} where it is the support",
+        named(fast_timing),
+        named(fast_support)
+    );
     let wanted = slow_timing.outcome.diagnosis.next_experiment.as_deref();
     let wanted = wanted.map_or_else(String::new, |wanted| {
         format!(

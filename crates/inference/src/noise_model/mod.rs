@@ -24,7 +24,6 @@ pub use input_noise::{InputNoise, input_noise};
 pub use sensor::{is_sensor_noise, noise_variance, rounding_variance, stepped};
 pub use whitening::whitening;
 
-use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
 use simgap_signal::correlation::effective_sample_count;
 
@@ -54,9 +53,22 @@ impl NoiseModel {
         baseline: &Fit,
         residual: &Fit,
     ) -> Result<NoiseModel, EstimateError> {
+        let options = FitOptions::white(problem.model.outputs.len());
+        let driven = input_noise(problem, &baseline.estimate.nominal, &options, &[])?;
+        let of_simulation = accuracy(problem, baseline)?;
+        let std = problem.output_std();
+        let channels = of_simulation.iter().zip(&driven).zip(&std);
+        let floor = channels.map(|((accuracy, driven), std)| {
+            let share = accuracy.hypot(driven.beyond(0.0).sqrt()) / std;
+            if share.is_finite() {
+                share.min(1.0)
+            } else {
+                1.0
+            }
+        });
         let noise = NoiseModel {
             effective_share: vec![],
-            floor: floor(problem, baseline)?,
+            floor: floor.collect(),
         };
         Ok(noise.with_colour_of(residual))
     }
@@ -90,25 +102,6 @@ impl NoiseModel {
             ..FitOptions::white(self.floor.len())
         }
     }
-}
-
-/// ε_c over the standard deviation of the channel, with the effects and parameters of a fit.
-fn floor(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError> {
-    let options = FitOptions::white(problem.model.outputs.len());
-    let placed: Vec<Placed> = fit.estimate.placed().cloned().collect();
-    let driven = input_noise(problem, &placed, &options, &[])?;
-    let of_simulation = accuracy(problem, fit)?;
-    let std = problem.output_std();
-    let channels = of_simulation.iter().zip(&driven).zip(&std);
-    let floor = channels.map(|((accuracy, driven), std)| {
-        let share = accuracy.hypot(driven.beyond(0.0).sqrt()) / std;
-        if share.is_finite() {
-            share.min(1.0)
-        } else {
-            1.0
-        }
-    });
-    Ok(floor.collect())
 }
 
 /// Share of independent samples in the discrepancy of each channel.

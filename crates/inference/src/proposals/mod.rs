@@ -6,3 +6,5 @@ mod multiple_shooting;
 mod multistart;
 mod recalibrated;
 mod unite;
+
+pub use recalibrated::RECALIBRATION_STD;

@@ -13,8 +13,8 @@ use simgap_estimate::{EstimateError, FitOptions, Start, linearise_at};
 use crate::candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
 use crate::search::Search;
 
-/// Standard deviation of the wide prior.
-const WIDE_STD: f64 = 0.5;
+/// Prior on nominal parameters while they are re-estimated: known to a factor of about two.
+pub const RECALIBRATION_STD: f64 = 0.5;
 /// Effects that are fitted alone, and beside each of the best sets.
 const FITTED: usize = 12;
 const BESIDE: usize = 6;
@@ -39,7 +39,7 @@ impl Search<'_> {
         }
         let wide = Search {
             options: FitOptions {
-                nominal_std: Some(WIDE_STD),
+                nominal_std: Some(RECALIBRATION_STD),
                 ..self.options.clone()
             },
             space: self
@@ -91,11 +91,7 @@ impl Search<'_> {
     /// first, as long as the set grows likelier.
     fn add_parameters(&self, start: &Start) -> Vec<CandidateModel> {
         let mut off = self.off(start);
-        let mut stated = start.clone();
-        for placed in &mut stated.nominal {
-            placed.values.fill(1.0);
-        }
-        let Ok(first) = self.fit(&stated) else {
+        let Ok(first) = self.fit(&as_stated(start.clone())) else {
             return vec![];
         };
         let mut grown = vec![first];
@@ -137,11 +133,7 @@ impl Search<'_> {
     /// A start in which every nominal parameter that has left what the model states of it is an effect.
     fn name_parameters(&self, start: &Start) -> Start {
         let off = self.off(start).into_iter();
-        let mut named = off.fold(start.clone(), |named, placed| add(&named, placed));
-        for placed in &mut named.nominal {
-            placed.values.fill(1.0);
-        }
-        named
+        as_stated(off.fold(start.clone(), |named, placed| add(&named, placed)))
     }
 
     /// A set with one parameter less, and again, as long as it is likelier so.
@@ -162,6 +154,14 @@ impl Search<'_> {
             }
         }
     }
+}
+
+/// A start with its nominal parameters as the model states them.
+fn as_stated(mut start: Start) -> Start {
+    for placed in &mut start.nominal {
+        placed.values.fill(1.0);
+    }
+    start
 }
 
 fn likeliest(sets: Vec<CandidateModel>) -> Option<CandidateModel> {
