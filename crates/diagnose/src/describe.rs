@@ -220,16 +220,13 @@ fn description(model: &Model, decision: &Decision, checked: &Checked) -> Vec<Str
         ));
     }
     if let Some(found) = &decision.other.coincidence {
-        let places: Vec<String> = found.at.iter().map(ToString::to_string).collect();
-        sentences.push(match &places[..] {
-            [one] => format!(
-                "{} {one} has two values that agree: one would do",
-                found.kind
-            ),
+        let effects = found.effects.iter();
+        let names: Vec<String> = effects.map(|(kind, at)| format!("{kind} {at}")).collect();
+        sentences.push(match &names[..] {
+            [one] => format!("{one} has two values that agree: one would do"),
             _ => format!(
-                "{} {} agree in {}: one cause behind them is likelier than one of each",
-                found.kind,
-                places.join(" and "),
+                "{} agree in {}: one cause behind both is likelier than two",
+                names.join(" and "),
                 found.parameter
             ),
         });

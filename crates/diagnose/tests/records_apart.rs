@@ -58,7 +58,7 @@ fn verify_a_force_is_not_taken_for_a_tone_of_every_sensor() {
     let verdict = &outcome.diagnosis.verdict;
     assert_eq!(verdict.status, Status::Unknown, "{verdict:?}");
     let mut told = verdict.description.iter();
-    let is_told = told.any(|sentence| sentence.contains("one cause behind them"));
+    let is_told = told.any(|sentence| sentence.contains("one cause behind both"));
     assert!(is_told, "{:?}", verdict.description);
 }
 

@@ -1,8 +1,8 @@
 //! Values that agree better than independent causes would have them.
 //!
-//! Two effects of one kind at two places are two causes, each with a prior of its own: two sensors are late by two times,
-//! and two tones have two frequencies. Where values agree, one cause that acts on both places is likelier. By how much is
-//! the ratio of the two hypotheses' marginal likelihoods, which needs no further fit,
+//! Two effects are two causes, each with a prior of its own: two sensors are late by two times, and what swings a spring has
+//! another frequency than what swings a damper. Where values of one name agree, one cause that acts in both ways is likelier. By
+//! how much is the ratio of the two hypotheses' marginal likelihoods, which needs no further fit,
 //!
 //! ```text
 //! B = p(u₁ − u₂ = 0 | y) / p(u₁ − u₂ = 0)                                  (1)
@@ -28,10 +28,8 @@ use crate::model_space::ModelSpace;
 pub struct Coincidence {
     /// Name of the value.
     pub parameter: &'static str,
-    /// Places of the effects that share it, or the one place.
-    pub at: Vec<Location>,
-    /// Kind of the effects.
-    pub kind: &'static str,
+    /// Kind and place of each effect that has it: one, or two.
+    pub effects: Vec<(&'static str, Location)>,
     /// ln B of (1).
     pub log_odds: f64,
 }
@@ -46,9 +44,13 @@ pub(crate) fn coincidence(set: &CandidateModel, space: &ModelSpace) -> Option<Co
             found.extend(posterior.compare((i, a), (i, b), effects));
         }
         for (j, other) in effects.iter().enumerate().skip(i + 1) {
-            if other.effect.kind() == placed.effect.kind() {
-                let values = 0..placed.effect.parameters().len();
-                found.extend(values.filter_map(|k| posterior.compare((i, k), (j, k), effects)));
+            for (k, parameter) in placed.effect.parameters().iter().enumerate() {
+                let others = other.effect.parameters().iter();
+                let mut same = others
+                    .enumerate()
+                    .filter(|(_, of)| of.name == parameter.name);
+                let pair = same.next().map(|(l, _)| ((i, k), (j, l)));
+                found.extend(pair.and_then(|(one, other)| posterior.compare(one, other, effects)));
             }
         }
     }
@@ -135,15 +137,12 @@ impl Posterior {
         let log_odds = log_normal(first.coordinate - second.coordinate, of_posterior)
             - log_normal(first.mean - second.mean, of_prior)
             - sign;
-        let (placed, parameter) = (&effects[one.0], one.1);
-        let mut at = vec![placed.at.clone()];
-        if one.0 != other.0 {
-            at.push(effects[other.0].at.clone());
-        }
+        let mut places = vec![one.0, other.0];
+        places.dedup();
+        let placed = places.into_iter().map(|e| &effects[e]);
         Some(Coincidence {
-            parameter: placed.effect.parameters()[parameter].name,
-            at,
-            kind: placed.effect.kind(),
+            parameter: effects[one.0].effect.parameters()[one.1].name,
+            effects: placed.map(|p| (p.effect.kind(), p.at.clone())).collect(),
             log_odds,
         })
         .filter(|found| found.log_odds.is_finite())

@@ -9,6 +9,9 @@
 //! relevance*): what closes less belongs to the smaller set. Effects that can be exchanged within the stated odds cannot
 //! be told apart.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
 use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
@@ -170,45 +173,97 @@ impl Relevance {
         search: &Search<'_>,
         mut pool: Vec<CandidateModel>,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
+        // Of each set its best fit.
         rank(&mut pool);
-        let mut kept: Vec<CandidateModel> = vec![];
-        let mut rest = std::collections::VecDeque::from(pool);
-        while let Some(set) = rest.pop_front() {
-            let least = kept
-                .first()
-                .map_or(f64::NEG_INFINITY, |best| best.log_posterior() - NEGLIGIBLE);
-            if set.log_posterior() < least {
-                kept.push(set);
-                kept.extend(rest);
+        let mut asked = Asked::default();
+        asked.extend(pool);
+        let mut best = f64::NEG_INFINITY;
+        while let Some(index) = asked.next() {
+            let set = asked.sets[index].clone();
+            if set.log_posterior() < best - NEGLIGIBLE {
                 break;
             }
-            let mut is_relevant = true;
-            for i in 0..set.effects().len() {
-                let key = set.key_without(i);
-                let known = kept.iter().chain(&rest).find(|other| other.key() == key);
-                let mut simpler = match known {
-                    Some(known) => vec![known.clone()],
-                    None => vec![search.fit(&remove(&set.fit.estimate, i, search.nominal))?],
-                };
-                // A law beyond a special case of it is held to the same.
-                simpler.extend(search.shrink(&set, i));
-                let moved = moved(search, &set, i)?;
-                is_relevant &= simpler
-                    .iter()
-                    .all(|other| self.is_relevant(search, &set, other, &moved));
-                for other in simpler {
-                    let key = other.key();
-                    if kept.iter().chain(&rest).all(|known| known.key() != key) {
-                        insert(&mut rest, other);
-                    }
-                }
-            }
+            let is_relevant = self.are_relevant(search, &set, &mut asked)?;
+            asked.relevant[index] = Some(is_relevant);
             if is_relevant {
-                kept.push(set);
+                best = best.max(set.log_posterior());
             }
         }
+        Ok(asked.kept())
+    }
+
+    /// Whether all effects of a set are relevant. Of an irrelevant one, the set without it is asked next.
+    fn are_relevant(
+        &self,
+        search: &Search<'_>,
+        set: &CandidateModel,
+        asked: &mut Asked,
+    ) -> Result<bool, EstimateError> {
+        // What is fitted already tells soonest.
+        let is_known = |i: &usize| asked.places.contains_key(&set.key_without(*i));
+        let (mut order, unknown): (Vec<usize>, Vec<usize>) =
+            (0..set.effects().len()).partition(is_known);
+        order.extend(unknown);
+        for i in order {
+            let moved = moved(search, set, i)?;
+            let smaller = match asked.places.get(&set.key_without(i)) {
+                Some(&known) => asked.sets[known].clone(),
+                None => search.fit(&remove(&set.fit.estimate, i, search.nominal))?,
+            };
+            let mut is_relevant = self.is_relevant(search, set, &smaller, &moved);
+            asked.extend(vec![smaller]);
+            if is_relevant {
+                // A law beyond a special case of it is held to the same.
+                let special = search.shrink(set, i);
+                let mut each = special.iter();
+                is_relevant = each.all(|other| self.is_relevant(search, set, other, &moved));
+                asked.extend(special);
+            }
+            if !is_relevant {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// Sets, and of each whether all its effects are relevant, once it was asked.
+#[derive(Default)]
+struct Asked {
+    sets: Vec<CandidateModel>,
+    relevant: Vec<Option<bool>>,
+    /// Where each set is, by its key.
+    places: BTreeMap<Vec<String>, usize>,
+}
+
+impl Asked {
+    /// Adds the sets that are not among them.
+    fn extend(&mut self, sets: Vec<CandidateModel>) {
+        for set in sets {
+            if let Entry::Vacant(place) = self.places.entry(set.key()) {
+                place.insert(self.sets.len());
+                self.sets.push(set);
+                self.relevant.push(None);
+            }
+        }
+    }
+
+    /// The likeliest of the sets that were not asked.
+    fn next(&self) -> Option<usize> {
+        let open = (0..self.sets.len()).filter(|&i| self.relevant[i].is_none());
+        let posterior = |i: &usize| self.sets[*i].log_posterior();
+        // Of equals the first.
+        open.rev()
+            .max_by(|a, b| posterior(a).total_cmp(&posterior(b)))
+    }
+
+    /// All but those that hold an irrelevant effect, likeliest first.
+    fn kept(self) -> Vec<CandidateModel> {
+        let sets = self.sets.into_iter().zip(self.relevant);
+        let kept = sets.filter(|(_, relevant)| *relevant != Some(false));
+        let mut kept: Vec<CandidateModel> = kept.map(|(set, _)| set).collect();
         rank(&mut kept);
-        Ok(kept)
+        kept
     }
 }
 
@@ -248,14 +303,6 @@ fn closed<'a>(
 ) -> impl Iterator<Item = f64> + 'a {
     let variances = without.fit.variance.iter().zip(&with.fit.variance);
     variances.map(|(poorer, better)| (poorer - better).max(0.0))
-}
-
-/// Puts a set where it belongs in a ranked list.
-fn insert(list: &mut std::collections::VecDeque<CandidateModel>, set: CandidateModel) {
-    let worse = list
-        .iter()
-        .position(|other| other.log_posterior() < set.log_posterior());
-    list.insert(worse.unwrap_or(list.len()), set);
 }
 
 fn effect(

@@ -14,8 +14,10 @@
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
-use simgap_effects::Placed;
-use simgap_estimate::{EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at};
+use simgap_effects::{Family, Placed};
+use simgap_estimate::{
+    Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
+};
 
 use crate::candidate_model::{CandidateModel, is_nominal, name, rank, remove};
 use crate::marginal_likelihood::{NominalPrior, log_marginal_likelihood};
@@ -36,6 +38,17 @@ const MOST_EFFECTS: usize = 3;
 const MOST_PARAMETERS: usize = 3;
 /// Rounds of changes to the best set.
 const ROUNDS: usize = 4;
+
+/// What counts of a set that holds so many effects of other families and so many wrong nominal parameters.
+fn size(others: usize, parameters: usize) -> usize {
+    others + parameters.saturating_sub(MOST_PARAMETERS)
+}
+
+/// Effects of other families and wrong nominal parameters of a set.
+fn counts(set: &CandidateModel) -> [usize; 2] {
+    let parameters = set.effects().iter().filter(|p| is_nominal(p)).count();
+    [set.effects().len() - parameters, parameters]
+}
 
 /// Told what is being done, and asked whether to go on.
 #[derive(Clone, Copy)]
@@ -85,7 +98,7 @@ impl<'a> Search<'a> {
             options: self.options.clone(),
             space: self
                 .space
-                .of_families(|family| family == simgap_effects::Family::NominalParameter),
+                .of_families(|family| family == Family::NominalParameter),
             nominal: NominalPrior::Stated(stated_std),
             budget: self.budget,
         }
@@ -164,9 +177,18 @@ impl<'a> Search<'a> {
 
     /// Whether a set holds as many effects as any set.
     pub(crate) fn is_full(&self, set: &CandidateModel) -> bool {
-        let parameters = set.effects().iter().filter(|p| is_nominal(p)).count();
-        let others = set.effects().len() - parameters;
-        others + parameters.saturating_sub(MOST_PARAMETERS) >= MOST_EFFECTS
+        let [others, parameters] = counts(set);
+        size(others, parameters) >= MOST_EFFECTS
+    }
+
+    /// Whether a candidate may be added to a set: it makes sense beside the effects of the set, which has room for it.
+    pub(crate) fn may_hold(&self, set: &CandidateModel, candidate: &Candidate) -> bool {
+        let [others, parameters] = counts(set);
+        let size = match candidate.effect.family() {
+            Family::NominalParameter => size(others, parameters + 1),
+            _ => size(others + 1, parameters),
+        };
+        size <= MOST_EFFECTS && !set.rules_out(candidate)
     }
 
     /// Noise of the sensors in what a set leaves, and what no set is expected to explain, mean square of each channel.

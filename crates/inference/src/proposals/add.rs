@@ -81,7 +81,7 @@ impl Search<'_> {
             .space
             .candidates
             .par_iter()
-            .filter(|(candidate, _)| !base.rules_out(candidate))
+            .filter(|(candidate, _)| self.may_hold(base, candidate))
             .map(|(candidate, scale)| match prior_score(base, candidate) {
                 // Already adjustable under its narrow prior: its score starts from there.
                 Some(score) => vec![score],

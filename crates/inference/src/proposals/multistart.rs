@@ -40,7 +40,7 @@ impl Search<'_> {
         linear: &Base<'_>,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let candidates = self.space.candidates.par_iter();
-        let free = candidates.filter(|(candidate, _)| !base.rules_out(candidate));
+        let free = candidates.filter(|(candidate, _)| self.may_hold(base, candidate));
         let scored = free.map(|(candidate, scale)| {
             let effect = candidate.effect;
             let (scores, most) = if effect.clock().is_some() {

@@ -26,7 +26,7 @@ impl Search<'_> {
         linear: &Base<'_>,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let candidates = self.space.candidates.iter();
-        let free = candidates.filter(|(candidate, _)| !base.rules_out(candidate));
+        let free = candidates.filter(|(candidate, _)| self.may_hold(base, candidate));
         let shapes: Vec<(Candidate, Vec<f64>)> = free
             .flat_map(|(candidate, scale)| {
                 let shapes = candidate.effect.starts(scale).into_iter().take(SHAPES);
