@@ -97,6 +97,11 @@ impl Effect for BilinearStiffness {
         }
     }
 
+    /// Alike on both sides it is a law about rest, like a clearance, not one of two sides.
+    fn coincidence(&self) -> Option<[usize; 2]> {
+        Some([1, 2])
+    }
+
     fn action(&self, values: &[f64]) -> Action {
         Action::Force(Box::new(Law {
             change: values[0],
