@@ -9,7 +9,9 @@
 use simgap_effects::{Placed, catalogue};
 use simgap_estimate::{Fit, FitOptions, Problem, Start, fit, fit_initial_states};
 use simgap_inference::noise_model::whitening;
-use simgap_inference::{Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, is_nominal};
+use simgap_inference::{
+    Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, is_nominal, recalibrate,
+};
 use simgap_model::{Location, Model};
 use simgap_record::{Defect, QualityFinding, Record};
 
@@ -209,7 +211,7 @@ fn prepare(request: &Request<'_>, data: &Data) -> Result<Prepared, DiagnoseError
         nominal_std: Some(RECALIBRATION_STD),
         ..options
     };
-    let recalibrated = fit(&train, &start, &loose)?;
+    let recalibrated = recalibrate(&train, &start, &loose)?;
     let excerpt = train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy));
     Ok(Prepared {
         train,

@@ -3,7 +3,7 @@
 //! ```text
 //! nominal model, records -> noise model (once)                         noise_model
 //! catalogue x places     -> sets and their prior                       model_space
-//! proposals of sets      -> fits; a search with budgets                proposals, search
+//! proposals of sets      -> fits; a search with budgets                proposals, search, stretches
 //! ln Z + ln p of each    -> computed once, never changed               marginal_likelihood
 //! posterior over sets    -> effects, classes, relevance                model_posterior
 //! a law of any shape, values that agree -> the probability of another cause     other, coincidence
@@ -21,6 +21,7 @@ pub mod noise_model;
 mod other;
 mod proposals;
 mod search;
+mod stretches;
 
 pub use candidate_model::{CandidateModel, add, is_nominal, name, rank};
 pub use coincidence::Coincidence;
@@ -30,3 +31,4 @@ pub use noise_model::NoiseModel;
 pub use other::{FreeLaw, Gap, Other, other};
 pub use proposals::RECALIBRATION_STD;
 pub use search::{Budget, Search};
+pub use stretches::recalibrate;

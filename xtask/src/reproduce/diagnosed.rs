@@ -1,6 +1,6 @@
 //! The paper's own gap, given to the diagnosis under both readings without a label.
 
-use simgap_diagnose::{NamedEffect, Outcome, Request, diagnose};
+use simgap_diagnose::{Outcome, Request, Status, Verdict, diagnose};
 use simgap_model::Model;
 use simgap_mold::{
     DISPLACEMENT_CHANNEL, FORCE_CHANNEL, OneDof, Reading, STANDARD_GRAVITY, rebuild,
@@ -82,7 +82,7 @@ fn story(cases: &[Case]) -> Result<String, ReproduceError> {
     let [slow_timing, slow_support, fast_timing, fast_support] = cases else {
         return Err(ReproduceError::Story("two readings at two rates"));
     };
-    let named = |case: &Case| kinds(&case.outcome.diagnosis.verdict.effects);
+    let named = |case: &Case| said(&case.outcome.diagnosis.verdict);
     let alternates = |case: &Case| {
         let mut effects = case.outcome.diagnosis.verdict.effects.iter();
         effects.any(|effect| effect.kind == "alternating_timing")
@@ -168,9 +168,17 @@ fn answer(context: &Context, rate_hz: f64, reading: Reading) -> Result<Outcome, 
     Ok(diagnose(&request, &|_| ())?)
 }
 
-fn kinds(effects: &[NamedEffect]) -> String {
-    let named = effects.iter().map(|e| format!("`{}` {}", e.kind, e.at));
-    named.collect::<Vec<_>>().join(", ")
+/// What an answer names; of `unknown`, why.
+fn said(verdict: &Verdict) -> String {
+    let named = verdict.effects.iter();
+    let named: Vec<String> = named.map(|e| format!("`{}` {}", e.kind, e.at)).collect();
+    match verdict.status {
+        Status::Unknown => {
+            let why = verdict.description.first();
+            format!("nothing: {}", why.map_or("`unknown`", String::as_str))
+        }
+        _ => named.join(", "),
+    }
 }
 
 fn answers(cases: &[Case]) -> Table {
@@ -190,7 +198,7 @@ fn answers(cases: &[Case]) -> Table {
         table.rows.push(vec![
             Cell::Number(case.rate_hz, 3),
             Cell::text(case.reading),
-            Cell::text(kinds(effects)),
+            Cell::text(said(&case.outcome.diagnosis.verdict)),
             Cell::text(if rivals.is_empty() {
                 "nothing".to_owned()
             } else {

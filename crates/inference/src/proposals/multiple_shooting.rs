@@ -1,36 +1,18 @@
-//! Laws of the machine fitted to stretches of the records, each of which begins anew.
+//! Laws of the machine fitted to stretches of the records, each of which begins anew ([`crate::stretches`]).
 //!
-//! Over a whole record a simulation that is a little off parts from the machine: the objective has a valley for
-//! every lap that one is ahead of the other, and for every blow that one receives alone. In a stretch that begins
-//! as it was measured both stay together for longer, and there are fewer valleys. What is found there is the start
-//! of a fit to whole records: multiple shooting, the stretches tied together by the values they share alone.
-//!
-//! Reference: \[Bock1983\].
+//! Nominal parameters are re-estimated beside the laws, as in [`super::recalibrated`]: over whole records they could not be.
 
-use std::ops::Range;
-
-use rayon::prelude::*;
-use simgap_effects::{Family, Placed};
-use simgap_estimate::{
-    Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, fit_initial_states_from,
-    linearise_at,
-};
-use simgap_model::Location;
+use simgap_effects::Family;
+use simgap_estimate::{Candidate, EstimateError, Fit, Problem, Start, linearise_at};
 
 use crate::candidate_model::{CandidateModel, rank, straight};
 use crate::model_space::ModelSpace;
 use crate::search::Search;
+use crate::stretches::Cut;
 
 /// Single laws fitted to stretches, by score, and sets that are fitted to whole records then.
 const FITTED: usize = 12;
 const FINISHED: usize = 6;
-/// Samples of the stretches that a fit begins with, at the least, and how many there are of a record at the most.
-const SHORTEST: usize = 64;
-const MOST_STRETCHES: usize = 40;
-/// Stretches that become one where sets are fitted to longer ones.
-const JOINED: usize = 4;
-/// Steps of these fits: the valley is narrow.
-const STEPS: usize = 80;
 
 impl Search<'_> {
     /// Laws of the machine fitted to stretches of the records, to longer ones, and then to whole records. Best first.
@@ -38,34 +20,17 @@ impl Search<'_> {
         &self,
         base: &CandidateModel,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        let mut cut = Cut::of(self.problem);
+        let cut = Cut::of(self.problem);
         let is_law = |candidate: &Candidate| candidate.effect.family().is_law();
         if cut.is_whole() || !self.space.candidates.iter().any(|(known, _)| is_law(known)) {
             return Ok(vec![]);
         }
-        let weights = FitOptions {
-            most_steps: STEPS,
-            ..self.options.clone()
-        };
-        let mut found = self.fit_to_stretches(base, &cut)?;
-        loop {
-            let longer = cut.joined();
-            let problem = longer.apply(self.problem);
-            let fits = found.par_iter().filter_map(|start| {
-                let start = cut.of_joined(start);
-                // A start from which the plant runs away is no hypothesis.
-                fit(&problem, &start, &weights).ok()
-            });
-            let fits: Vec<Fit> = fits.collect();
-            if longer.is_whole() {
-                let sets = fits.into_iter().map(|fit| self.candidate_model(fit));
-                let mut sets: Vec<CandidateModel> = sets.collect();
-                rank(&mut sets);
-                return Ok(sets);
-            }
-            found = fits.into_iter().map(|fit| fit.estimate).collect();
-            cut = longer;
-        }
+        let found = self.fit_to_stretches(base, &cut)?;
+        let fits = cut.lengthen(self.problem, found, &self.wide_options());
+        let sets = fits.into_iter().map(|fit| self.candidate_model(fit));
+        let mut sets = self.with_parameters_named(sets.collect());
+        rank(&mut sets);
+        Ok(sets)
     }
 
     /// The best laws, alone and together, each stretch with an initial state of its own.
@@ -75,13 +40,10 @@ impl Search<'_> {
         cut: &Cut,
     ) -> Result<Vec<Start>, EstimateError> {
         let problem = cut.apply(self.problem);
-        let nominal = &straight(base);
-        let initial = begin(&problem, cut, nominal, &self.options)?;
-        let mut begun = fit_initial_states_from(&problem, nominal, initial, &self.options)?;
-        begun.estimate.nominal.clone_from(nominal);
+        let begun = cut.begin(self.problem, &straight(base), &self.options)?;
         let search = Search {
             problem: &problem,
-            options: self.options.clone(),
+            options: self.wide_options(),
             space: self.laws_in(&problem, &begun)?,
             nominal: self.nominal,
             budget: self.budget,
@@ -98,137 +60,9 @@ impl Search<'_> {
 
     /// The laws of the machine, with what is typical of the motion of a fit of other runs of the same records.
     fn laws_in(&self, problem: &Problem, fit: &Fit) -> Result<ModelSpace, EstimateError> {
-        let of_machine = |family: Family| family != Family::Measurement;
-        let laws = self.space.of_families(of_machine).candidates;
+        let is_beyond =
+            |family: Family| !matches!(family, Family::Measurement | Family::NominalParameter);
+        let laws = self.space.of_families(is_beyond).candidates;
         ModelSpace::of(problem, fit, laws.into_iter().map(|(law, _)| law))
-    }
-}
-
-/// The samples of every stretch of every record.
-struct Cut(Vec<Vec<Range<usize>>>);
-
-impl Cut {
-    fn of(problem: &Problem) -> Cut {
-        let runs = problem.runs.iter();
-        Cut(runs
-            .map(|run| bounds(run.len, SHORTEST, MOST_STRETCHES))
-            .collect())
-    }
-
-    fn is_whole(&self) -> bool {
-        self.0.iter().all(|stretches| stretches.len() < 2)
-    }
-
-    /// The records of a problem in stretches.
-    fn apply(&self, problem: &Problem) -> Problem {
-        let runs = problem.runs.iter().zip(&self.0);
-        let cut = runs.flat_map(|(run, stretches)| {
-            let each = stretches.iter();
-            each.map(|samples| run.slice(samples.clone()))
-        });
-        problem.with_runs(cut.collect())
-    }
-
-    /// With every few stretches of a record as one.
-    fn joined(&self) -> Cut {
-        let join = |few: &[Range<usize>]| few[0].start..few[few.len() - 1].end;
-        let of_record =
-            |stretches: &Vec<Range<usize>>| stretches.chunks(JOINED).map(join).collect();
-        Cut(self.0.iter().map(of_record).collect())
-    }
-
-    /// What was fitted to stretches, as each of the joined ones begins.
-    fn of_joined(&self, start: &Start) -> Start {
-        let mut firsts = vec![];
-        let mut next = 0;
-        for stretches in &self.0 {
-            firsts.extend((next..next + stretches.len()).step_by(JOINED));
-            next += stretches.len();
-        }
-        let of_firsts = |list: &[Vec<f64>]| {
-            firsts
-                .iter()
-                .filter_map(|k| list.get(*k).cloned())
-                .collect()
-        };
-        let effects = start.effects.iter().map(|placed| Placed {
-            of_record: of_firsts(&placed.of_record),
-            ..placed.clone()
-        });
-        Start {
-            effects: effects.collect(),
-            nominal: start.nominal.clone(),
-            initial: of_firsts(&start.initial),
-        }
-    }
-}
-
-/// Initial states of the stretches: each begins where the model left the one before, and is moved to where it was
-/// measured. What the outputs do not show, like a position where velocities are measured, goes on.
-fn begin(
-    cut: &Problem,
-    stretches: &Cut,
-    nominal: &[Placed],
-    weights: &FitOptions,
-) -> Result<Vec<Vec<f64>>, EstimateError> {
-    let guess = cut.initial_guess();
-    let mut states: Vec<Vec<f64>> = Vec::with_capacity(cut.runs.len());
-    for of_record in &stretches.0 {
-        let mut next = None;
-        for _ in of_record {
-            let k = states.len();
-            let alone = cut.with_runs(vec![cut.runs[k].clone()]);
-            let from = next.unwrap_or_else(|| guess[k].clone());
-            let fit = fit_initial_states_from(&alone, nominal, vec![from], weights)?;
-            let state = fit.estimate.initial.into_iter().next().unwrap_or_default();
-            next = Some(end(&alone, nominal, &state)?);
-            states.push(state);
-        }
-    }
-    Ok(states)
-}
-
-/// The state one step after the last sample of the only run.
-fn end(alone: &Problem, nominal: &[Placed], initial: &[f64]) -> Result<Vec<f64>, EstimateError> {
-    let simulator = alone.simulator(nominal, 0)?;
-    let run = &alone.runs[0];
-    let masses = alone.model.masses.iter();
-    let ends = masses.map(|mass| {
-        let path = simulator.path(run, initial, &Location::Mass(mass.name.clone()))?;
-        let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
-        let velocity = last(&path.velocity);
-        Ok([
-            last(&path.displacement) + run.time_step_s * velocity,
-            velocity,
-        ])
-    });
-    let ends = ends.collect::<Result<Vec<[f64; 2]>, EstimateError>>()?;
-    let part = |i: usize| ends.iter().map(move |end| end[i]);
-    Ok(part(0).chain(part(1)).collect())
-}
-
-/// The samples of each stretch of a record, of `shortest` or more and `most` stretches or fewer.
-fn bounds(len: usize, shortest: usize, most: usize) -> Vec<Range<usize>> {
-    let count = (len / shortest).clamp(1, most);
-    let bound = |k: usize| k * len / count;
-    (0..count).map(|k| bound(k)..bound(k + 1)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn joined_stretches_begin_where_the_first_of_them_did() {
-        let cut = Cut(vec![vec![0..2, 2..5, 5..6, 6..8, 8..9], vec![0..4, 4..7]]);
-        let longer = cut.joined();
-        assert_eq!(longer.0.concat(), [0..8, 8..9, 0..7]);
-        assert!(!longer.is_whole() && longer.joined().is_whole());
-        let start = Start {
-            effects: vec![],
-            nominal: vec![],
-            initial: (0..7).map(|k| vec![f64::from(k)]).collect(),
-        };
-        assert_eq!(cut.of_joined(&start).initial, [[0.0], [4.0], [5.0]]);
     }
 }

@@ -12,6 +12,7 @@ use simgap_estimate::{EstimateError, FitOptions, Start, linearise_at};
 
 use crate::candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
 use crate::search::Search;
+use crate::stretches::recalibrate;
 
 /// Prior on nominal parameters while they are re-estimated: known to a factor of about two.
 pub const RECALIBRATION_STD: f64 = 0.5;
@@ -38,18 +39,16 @@ impl Search<'_> {
             return Ok(vec![]);
         }
         let wide = Search {
-            options: FitOptions {
-                nominal_std: Some(RECALIBRATION_STD),
-                ..self.options.clone()
-            },
+            options: self.wide_options(),
             space: self
                 .space
                 .of_families(|family| family != Family::NominalParameter),
             ..*self
         };
-        let Ok(recalibrated) = wide.fit(&base.fit.estimate) else {
+        let Ok(fit) = recalibrate(self.problem, &base.fit.estimate, &wide.options) else {
             return Ok(vec![]);
         };
+        let recalibrated = wide.candidate_model(fit);
         let linear = linearise_at(self.problem, &recalibrated.fit, &wide.options)?;
         let mut found = wide.extend_at(&recalibrated, &linear, FITTED)?;
         found.extend(wide.fit_joint(&recalibrated, &linear)?);
@@ -62,11 +61,26 @@ impl Search<'_> {
             }
         }
         found.extend(larger);
+        Ok(self.with_parameters_named(found))
+    }
+
+    /// Options of a fit beside nominal parameters under a wide prior.
+    pub(crate) fn wide_options(&self) -> FitOptions {
+        FitOptions {
+            nominal_std: Some(RECALIBRATION_STD),
+            ..self.options.clone()
+        }
+    }
+
+    /// The best of some sets that were fitted beside nominal parameters under a wide prior, with those of the parameters that are
+    /// off as effects of the set.
+    pub(crate) fn with_parameters_named(
+        &self,
+        mut found: Vec<CandidateModel>,
+    ) -> Vec<CandidateModel> {
+        found.retain(|set| set.log_marginal_likelihood.is_finite());
         rank(&mut found);
-        let found = found
-            .into_iter()
-            .filter(|set| set.log_marginal_likelihood.is_finite());
-        let found: Vec<CandidateModel> = found.take(PROPOSED).collect();
+        found.truncate(PROPOSED);
         let starts: Vec<Start> = found
             .iter()
             .map(|set| self.name_parameters(&set.fit.estimate))
@@ -84,7 +98,7 @@ impl Search<'_> {
             .flat_map(|set| self.add_parameters(&set.fit.estimate));
         let both_ways: Vec<CandidateModel> = both_ways.chain(added).collect();
         proposed.extend(both_ways);
-        Ok(proposed)
+        proposed
     }
 
     /// The effects of a start beside nominal parameters as stated, then with those that are off, the one that helps most
