@@ -47,9 +47,21 @@ pub fn recalibrate(
     let Ok(fitted) = in_stretches() else {
         return Ok(whole);
     };
-    let by_stretches = cut.lengthen(problem, vec![fitted.estimate], weights).pop();
+    let by_stretches = cut.lengthen(problem, fitted.estimate, weights);
     let better = by_stretches.filter(|fit| fit.objective < whole.objective);
     Ok(better.unwrap_or(whole))
+}
+
+/// Sets fitted in as many steps as it takes. A start from which the plant runs away is no hypothesis.
+pub(crate) fn fit_long(problem: &Problem, starts: &[Start], weights: &FitOptions) -> Vec<Fit> {
+    let weights = FitOptions {
+        most_steps: STEPS,
+        ..weights.clone()
+    };
+    let fits = starts
+        .par_iter()
+        .filter_map(|start| fit(problem, start, &weights).ok());
+    fits.collect()
 }
 
 /// The samples of every stretch of every record.
@@ -92,36 +104,21 @@ impl Cut {
     }
 
     /// What was fitted to these stretches, fitted to longer ones and then to whole records.
-    pub(crate) fn lengthen(
-        self,
-        problem: &Problem,
-        mut found: Vec<Start>,
-        weights: &FitOptions,
-    ) -> Vec<Fit> {
-        let weights = FitOptions {
-            most_steps: STEPS,
-            ..weights.clone()
-        };
+    fn lengthen(self, problem: &Problem, found: Start, weights: &FitOptions) -> Option<Fit> {
         let mut cut = self;
+        let mut found = cut.of_joined(&found);
         loop {
-            let longer = cut.joined();
-            let cut_longer = longer.apply(problem);
-            let fits = found.par_iter().filter_map(|start| {
-                let start = cut.of_joined(start);
-                // A start from which the plant runs away is no hypothesis.
-                fit(&cut_longer, &start, &weights).ok()
-            });
-            let fits: Vec<Fit> = fits.collect();
-            if longer.is_whole() {
-                return fits;
+            cut = cut.joined();
+            let fit = fit_long(&cut.apply(problem), &[found], weights).pop()?;
+            if cut.is_whole() {
+                return Some(fit);
             }
-            found = fits.into_iter().map(|fit| fit.estimate).collect();
-            cut = longer;
+            found = cut.of_joined(&fit.estimate);
         }
     }
 
     /// With every few stretches of a record as one.
-    fn joined(&self) -> Cut {
+    pub(crate) fn joined(&self) -> Cut {
         let join = |few: &[Range<usize>]| few[0].start..few[few.len() - 1].end;
         let of_record =
             |stretches: &Vec<Range<usize>>| stretches.chunks(JOINED).map(join).collect();
@@ -129,7 +126,7 @@ impl Cut {
     }
 
     /// What was fitted to stretches, as each of the joined ones begins.
-    fn of_joined(&self, start: &Start) -> Start {
+    pub(crate) fn of_joined(&self, start: &Start) -> Start {
         let mut firsts = vec![];
         let mut next = 0;
         for stretches in &self.0 {

@@ -2,13 +2,14 @@
 //!
 //! Nominal parameters are re-estimated beside the laws, as in [`super::recalibrated`]: over whole records they could not be.
 
+use rayon::prelude::*;
 use simgap_effects::Family;
 use simgap_estimate::{Candidate, EstimateError, Fit, Problem, Start, linearise_at};
 
 use crate::candidate_model::{CandidateModel, rank, straight};
 use crate::model_space::ModelSpace;
 use crate::search::Search;
-use crate::stretches::Cut;
+use crate::stretches::{Cut, fit_long};
 
 /// Single laws fitted to stretches, by score, and sets that are fitted to whole records then.
 const FITTED: usize = 12;
@@ -20,42 +21,55 @@ impl Search<'_> {
         &self,
         base: &CandidateModel,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        let cut = Cut::of(self.problem);
+        let mut cut = Cut::of(self.problem);
         let is_law = |candidate: &Candidate| candidate.effect.family().is_law();
         if cut.is_whole() || !self.space.candidates.iter().any(|(known, _)| is_law(known)) {
             return Ok(vec![]);
         }
-        let found = self.fit_to_stretches(base, &cut)?;
-        let fits = cut.lengthen(self.problem, found, &self.wide_options());
-        let sets = fits.into_iter().map(|fit| self.candidate_model(fit));
-        let mut sets = self.with_parameters_named(sets.collect());
+        let wide = self.wide_options();
+        let mut begun = cut.begin(self.problem, &straight(base), &self.options)?;
+        let mut found: Vec<Start> = vec![];
+        while !cut.is_whole() {
+            let problem = cut.apply(self.problem);
+            let search = Search {
+                problem: &problem,
+                options: wide.clone(),
+                space: self.laws_in(&problem, &begun)?,
+                nominal: self.nominal,
+                budget: self.budget,
+            };
+            let parameters = search.fit(&begun.estimate)?;
+            begun = parameters.fit.clone();
+            let mut sets = search.fit_laws(&parameters)?;
+            sets.extend(
+                found
+                    .par_iter()
+                    .filter_map(|start| search.fit(start).ok())
+                    .collect::<Vec<_>>(),
+            );
+            rank(&mut sets);
+            sets.truncate(FINISHED);
+            found = sets
+                .iter()
+                .map(|set| cut.of_joined(&set.fit.estimate))
+                .collect();
+            begun.estimate = cut.of_joined(&begun.estimate);
+            cut = cut.joined();
+        }
+        let fits = fit_long(self.problem, &found, &wide).into_iter();
+        let mut sets =
+            self.with_parameters_named(fits.map(|fit| self.candidate_model(fit)).collect());
         rank(&mut sets);
         Ok(sets)
     }
 
-    /// The best laws, alone and together, each stretch with an initial state of its own.
-    fn fit_to_stretches(
-        &self,
-        base: &CandidateModel,
-        cut: &Cut,
-    ) -> Result<Vec<Start>, EstimateError> {
-        let problem = cut.apply(self.problem);
-        let begun = cut.begin(self.problem, &straight(base), &self.options)?;
-        let search = Search {
-            problem: &problem,
-            options: self.wide_options(),
-            space: self.laws_in(&problem, &begun)?,
-            nominal: self.nominal,
-            budget: self.budget,
-        };
-        let begun = search.fit(&begun.estimate)?;
-        let linear = linearise_at(&problem, &begun.fit, &search.options)?;
-        let mut found = search.extend_at(&begun, &linear, FITTED)?;
-        found.extend(search.fit_joint(&begun, &linear)?);
-        found.extend(search.multistart(&begun, &linear)?);
-        rank(&mut found);
-        found.truncate(FINISHED);
-        Ok(found.into_iter().map(|set| set.fit.estimate).collect())
+    /// The best laws beside a set, alone and together.
+    fn fit_laws(&self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
+        let linear = linearise_at(self.problem, &base.fit, &self.options)?;
+        let mut found = self.extend_at(base, &linear, FITTED)?;
+        found.extend(self.fit_joint(base, &linear)?);
+        found.extend(self.multistart(base, &linear)?);
+        Ok(found)
     }
 
     /// The laws of the machine, with what is typical of the motion of a fit of other runs of the same records.
