@@ -5,7 +5,7 @@
 //! effects beside nominal parameters that are re-estimated
 //! pairs, sets of three: from the best sets so far, by score and from many values
 //! stretches of the records, each with a start of its own (multiple shooting)
-//! the best set: each effect removed, exchanged, grown, shrunk; one more added; until it stays
+//! the best set: each effect removed, exchanged, grown, shrunk; one more added; rescaled; until it stays
 //! ```
 //!
 //! A stage is left out where the best set leaves nothing but noise and no candidate's score could pay for its prior and for the
@@ -181,6 +181,12 @@ impl<'a> Search<'a> {
         size(others, parameters) >= MOST_EFFECTS
     }
 
+    /// Whether a set is no larger than any set may be.
+    pub(crate) fn is_allowed(&self, set: &CandidateModel) -> bool {
+        let [others, parameters] = counts(set);
+        size(others, parameters) <= MOST_EFFECTS
+    }
+
     /// Whether a candidate may be added to a set: it makes sense beside the effects of the set, which has room for it.
     pub(crate) fn may_hold(&self, set: &CandidateModel, candidate: &Candidate) -> bool {
         let [others, parameters] = counts(set);
@@ -309,6 +315,7 @@ impl<'a> Search<'a> {
             });
             let changed = changed.collect::<Result<Vec<_>, EstimateError>>()?;
             pool.extend(changed.into_iter().flatten());
+            pool.extend(self.rescale(&best));
             pool.retain(|set| set.log_marginal_likelihood.is_finite());
             rank(pool);
             let stays = pool.first().is_none_or(|first| first.key() == best.key());

@@ -5,6 +5,7 @@ mod grow;
 mod multiple_shooting;
 mod multistart;
 mod recalibrated;
+mod rescaled;
 mod unite;
 
 pub use recalibrated::RECALIBRATION_STD;

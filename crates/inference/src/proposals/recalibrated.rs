@@ -151,7 +151,7 @@ impl Search<'_> {
     }
 
     /// A set with one parameter less, and again, as long as it is likelier so.
-    fn prune_parameters(&self, set: &CandidateModel) -> Vec<CandidateModel> {
+    pub(crate) fn prune_parameters(&self, set: &CandidateModel) -> Vec<CandidateModel> {
         let mut pruned: Vec<CandidateModel> = vec![];
         loop {
             let last = pruned.last().unwrap_or(set);
