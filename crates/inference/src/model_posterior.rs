@@ -144,9 +144,11 @@ impl Relevance {
         without: &CandidateModel,
         moved: &[f64],
     ) -> bool {
+        let moves = moved.iter().zip(&self.motion);
+        let moves: Vec<bool> = moves.map(|(by, motion)| *by > OF_MOTION * motion).collect();
         // Nominal parameters that are bent to stand for the effect do what it does.
         if is_bent(without) && !is_bent(with) {
-            return true;
+            return moves.contains(&true);
         }
         let noise = search
             .noise_of(with)
@@ -154,17 +156,14 @@ impl Relevance {
             .zip(search.unexplainable(without));
         let left = without.fit.variance.iter().zip(noise);
         let channels = closed(with, without).zip(left);
-        let channels = channels.zip(self.gap.iter().zip(&self.motion));
-        let mut channels = channels.zip(moved);
-        channels.any(
-            |(((closed, (left, (noise, floor))), (gap, motion)), moved)| {
-                let stands_out = *left > NOISE_KNOWN * floor;
-                stands_out
-                    && *moved > OF_MOTION * motion
-                    && closed > (RELEVANT_SHARE * gap).powi(2)
-                    && closed > OF_REST * (left - noise)
-            },
-        )
+        let mut channels = channels.zip(self.gap.iter().zip(moves));
+        channels.any(|((closed, (left, (noise, floor))), (gap, moves))| {
+            let stands_out = *left > NOISE_KNOWN * floor;
+            stands_out
+                && moves
+                && closed > (RELEVANT_SHARE * gap).powi(2)
+                && closed > OF_REST * (left - noise)
+        })
     }
 
     /// The sets of which every effect is relevant, likeliest first.

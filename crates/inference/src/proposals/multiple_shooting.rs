@@ -2,9 +2,8 @@
 //!
 //! Nominal parameters are re-estimated beside the laws, as in [`super::recalibrated`]: over whole records they could not be.
 
-use rayon::prelude::*;
 use simgap_effects::Family;
-use simgap_estimate::{Candidate, EstimateError, Fit, Problem, Start, linearise_at};
+use simgap_estimate::{Candidate, EstimateError, Fit, FitOptions, Problem, Start, linearise_at};
 
 use crate::candidate_model::{CandidateModel, rank, straight};
 use crate::model_space::ModelSpace;
@@ -28,48 +27,47 @@ impl Search<'_> {
         }
         let wide = self.wide_options();
         let mut begun = cut.begin(self.problem, &straight(base), &self.options)?;
-        let mut found: Vec<Start> = vec![];
+        // Parameters that are re-estimated may hide a law at first: in the shortest stretches it is looked for beside those of the
+        // model as well.
+        let mut found = self.fit_beside(&begun, &cut, &self.options)?.1;
         while !cut.is_whole() {
-            let problem = cut.apply(self.problem);
-            let search = Search {
-                problem: &problem,
-                options: wide.clone(),
-                space: self.laws_in(&problem, &begun)?,
-                nominal: self.nominal,
-                budget: self.budget,
-            };
-            let parameters = search.fit(&begun.estimate)?;
-            begun = parameters.fit.clone();
-            let mut sets = search.fit_laws(&parameters)?;
-            sets.extend(
-                found
-                    .par_iter()
-                    .filter_map(|start| search.fit(start).ok())
-                    .collect::<Vec<_>>(),
-            );
+            let (parameters, mut sets) = self.fit_beside(&begun, &cut, &wide)?;
+            sets.append(&mut found);
             rank(&mut sets);
             sets.truncate(FINISHED);
-            found = sets
-                .iter()
-                .map(|set| cut.of_joined(&set.fit.estimate))
-                .collect();
-            begun.estimate = cut.of_joined(&begun.estimate);
+            begun.estimate = cut.of_joined(&parameters.fit.estimate);
+            let starts = sets.iter().map(|set| cut.of_joined(&set.fit.estimate));
+            let starts: Vec<Start> = starts.collect();
             cut = cut.joined();
+            let carried = fit_long(&cut.apply(self.problem), &starts, &wide).into_iter();
+            found = carried.map(|fit| self.candidate_model(fit)).collect();
         }
-        let fits = fit_long(self.problem, &found, &wide).into_iter();
-        let mut sets =
-            self.with_parameters_named(fits.map(|fit| self.candidate_model(fit)).collect());
+        let mut sets = self.with_parameters_named(found);
         rank(&mut sets);
         Ok(sets)
     }
 
-    /// The best laws beside a set, alone and together.
-    fn fit_laws(&self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
-        let linear = linearise_at(self.problem, &base.fit, &self.options)?;
-        let mut found = self.extend_at(base, &linear, FITTED)?;
-        found.extend(self.fit_joint(base, &linear)?);
-        found.extend(self.multistart(base, &linear)?);
-        Ok(found)
+    /// Nominal parameters in stretches, and the best laws beside them, alone and together.
+    fn fit_beside(
+        &self,
+        begun: &Fit,
+        cut: &Cut,
+        options: &FitOptions,
+    ) -> Result<(CandidateModel, Vec<CandidateModel>), EstimateError> {
+        let problem = &cut.apply(self.problem);
+        let search = Search {
+            problem,
+            options: options.clone(),
+            space: self.laws_in(problem, begun)?,
+            nominal: self.nominal,
+            budget: self.budget,
+        };
+        let parameters = search.fit(&begun.estimate)?;
+        let linear = linearise_at(problem, &parameters.fit, &search.options)?;
+        let mut found = search.extend_at(&parameters, &linear, FITTED)?;
+        found.extend(search.fit_joint(&parameters, &linear)?);
+        found.extend(search.multistart(&parameters, &linear)?);
+        Ok((parameters, found))
     }
 
     /// The laws of the machine, with what is typical of the motion of a fit of other runs of the same records.
