@@ -144,12 +144,12 @@ impl Relevance {
         without: &CandidateModel,
         moved: &[f64],
     ) -> bool {
-        let moves = moved.iter().zip(&self.motion);
-        let moves: Vec<bool> = moves.map(|(by, motion)| *by > OF_MOTION * motion).collect();
         // Nominal parameters that are bent to stand for the effect do what it does.
         if is_bent(without) && !is_bent(with) {
-            return moves.contains(&true);
+            return true;
         }
+        let moves = moved.iter().zip(&self.motion);
+        let moves = moves.map(|(by, motion)| *by > OF_MOTION * motion);
         let noise = search
             .noise_of(with)
             .into_iter()

@@ -82,12 +82,16 @@ impl Effect for AsymmetricDamping {
         vec![vec![damping, -damping]]
     }
 
+    /// A damper of the model that is off damps alike in both directions.
     fn contains(&self) -> &'static [&'static str] {
-        &["viscous_damping"]
+        &["viscous_damping", "damping_error"]
     }
 
-    fn grown_from(&self, _: &str, values: &[f64], _: &SiteScale) -> Vec<Vec<f64>> {
-        vec![vec![values[0], values[0]]]
+    fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        match kind {
+            "viscous_damping" => vec![vec![values[0], values[0]]],
+            _ => self.starts(scale),
+        }
     }
 
     fn coincidence(&self) -> Option<[usize; 2]> {
