@@ -4,10 +4,9 @@
 //! the true model departs from the machine. Started anew in every stretch from what was measured it follows for a while;
 //! a wrong law does not.
 
-use std::ops::Range;
-
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, FitOptions, Problem};
+use simgap_inference::bounds;
 use simgap_simulate::Run;
 
 use crate::gap::{predict, total};
@@ -34,13 +33,6 @@ pub(crate) fn contradicts(
 fn stretches(run: &Run) -> impl Iterator<Item = Run> + '_ {
     let bounds = bounds(run.len, SHORTEST, MOST_STRETCHES).into_iter();
     bounds.map(|samples| run.slice(samples))
-}
-
-/// The samples of each stretch of a record, of `shortest` or more and `most` stretches or fewer.
-fn bounds(len: usize, shortest: usize, most: usize) -> Vec<Range<usize>> {
-    let count = (len / shortest).clamp(1, most);
-    let bound = |k: usize| k * len / count;
-    (0..count).map(|k| bound(k)..bound(k + 1)).collect()
 }
 
 #[cfg(test)]

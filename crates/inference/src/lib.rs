@@ -31,4 +31,4 @@ pub use noise_model::NoiseModel;
 pub use other::{FreeLaw, Gap, Other, other};
 pub use proposals::RECALIBRATION_STD;
 pub use search::{Budget, Search};
-pub use stretches::recalibrate;
+pub use stretches::{bounds, recalibrate};

@@ -196,7 +196,8 @@ fn end(alone: &Problem, nominal: &[Placed], initial: &[f64]) -> Result<Vec<f64>,
 }
 
 /// The samples of each stretch of a record, of `shortest` or more and `most` stretches or fewer.
-fn bounds(len: usize, shortest: usize, most: usize) -> Vec<Range<usize>> {
+#[must_use]
+pub fn bounds(len: usize, shortest: usize, most: usize) -> Vec<Range<usize>> {
     let count = (len / shortest).clamp(1, most);
     let bound = |k: usize| k * len / count;
     (0..count).map(|k| bound(k)..bound(k + 1)).collect()
