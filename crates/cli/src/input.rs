@@ -140,7 +140,14 @@ pub(crate) fn idle_masses(model: &Model) -> Vec<String> {
                 _ => false,
             })
     };
-    let masses = model.masses.iter().filter(|mass| !used(&mass.name));
+    // Of a body, its points may be used instead; a beam joins by itself.
+    let alone = |name: &str| model.body_of(name).is_none() && !model.is_beam_coordinate(name);
+    let masses = model.masses.iter().filter(|mass| alone(&mass.name));
+    let joined_by_beam = |name: &str| {
+        let mut beams = model.beams.iter();
+        beams.any(|beam| between(&beam.between, name))
+    };
+    let masses = masses.filter(|mass| !used(&mass.name) && !joined_by_beam(&mass.name));
     masses
         .map(|mass| {
             format!(

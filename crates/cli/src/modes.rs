@@ -60,7 +60,7 @@ pub(crate) struct Complex {
     pub(crate) im: f64,
 }
 
-/// Part of a mass in a mode, over that of the mass which moves most.
+/// Part of a coordinate in a mode, over that of the mass which moves most.
 #[derive(Serialize)]
 struct Share {
     mass: String,
@@ -213,22 +213,23 @@ fn responses(
         .inputs
         .iter()
         .filter(|input| input.kind == InputKind::Force);
-    let mut masses: Vec<usize> = driven
-        .filter_map(|input| match model.node(&input.at) {
-            Some(Node::Dof(i)) => Some(i),
-            _ => None,
-        })
+    let mut forced: Vec<(String, Node)> = driven
+        .filter_map(|input| Some((input.at.clone(), model.node(&input.at)?)))
         .collect();
-    masses.dedup();
-    if masses.is_empty() {
-        masses = (0..model.dof_count()).collect();
+    forced.dedup();
+    if forced.is_empty() {
+        let each = model.masses.iter().enumerate();
+        forced = each
+            .filter(|(_, mass)| !model.is_beam_mode(&mass.name))
+            .map(|(i, mass)| (mass.name.clone(), Node::Dof(i)))
+            .collect();
     }
     let freqs = frequencies(modes);
     // Response of the linearised plant: pendulums stand at the operating point.
     let mut tangent = model.clone();
     for pendulum in &mut tangent.pendulums {
-        if let Some(Node::Dof(i)) = model.node(&pendulum.at) {
-            pendulum.value *= at[i].cos();
+        if let Some(node) = model.node(&pendulum.at) {
+            pendulum.value *= node.of(at, &[]).cos();
         }
     }
     let mut values = vec![];
@@ -251,11 +252,16 @@ fn responses(
     }
     let mut found = vec![];
     for (row, output) in model.outputs.iter().enumerate() {
-        for mass in &masses {
-            let curve = || values.iter().map(|matrix| matrix[(row, *mass)]);
+        for (name, node) in &forced {
+            let curve = || {
+                values.iter().map(|matrix| {
+                    let parts = node.terms().map(|(i, weight)| matrix[(row, i)] * weight);
+                    parts.reduce(|sum, part| sum + part).unwrap_or_default()
+                })
+            };
             found.push(Response {
                 output: output.channel.clone(),
-                force_on: model.masses[*mass].name.clone(),
+                force_on: name.clone(),
                 freq_hz: shown.clone(),
                 gain: curve().map(|z| z.norm()).collect(),
                 phase_deg: curve().map(|z| z.arg().to_degrees()).collect(),

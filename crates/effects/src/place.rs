@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use simgap_model::{EffectEntry, GROUND, Location, Model, same_pair};
+use simgap_model::{EffectEntry, GROUND, Location, Model, Node, NominalQuantity, same_pair};
 
 use crate::{Action, Effect, EffectError, SiteKind, catalogue, find_law};
 
@@ -112,7 +112,11 @@ impl Placed {
             }
             values.push(value);
         }
-        if !effect.site().accepts(&entry.at) {
+        // A point of a body has no mass of its own.
+        let is_massless = matches!(&entry.at, Location::Mass(name)
+            if effect.nominal_quantity() == Some(NominalQuantity::Mass)
+                && matches!(model.node(name), Some(Node::Point(_))));
+        if is_massless || !effect.site().accepts(&entry.at) {
             return Err(EffectError::WrongPlace {
                 kind: entry.kind.clone(),
                 found: entry.at.to_string(),
@@ -258,18 +262,29 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
 
 /// The masses of the names that are kept.
 fn masses(model: &Model, keep: impl Fn(&str) -> bool) -> Vec<Location> {
-    let names = model.masses.iter().map(|mass| &mass.name);
-    names
+    places(model)
         .filter(|name| keep(name))
-        .map(|name| Location::Mass(name.clone()))
+        .map(|name| Location::Mass(name.to_owned()))
         .collect()
 }
 
-/// The members of the model, and every mass with the ground.
+/// The coordinates that are places: a mode of a beam is a shape.
+fn places(model: &Model) -> impl Iterator<Item = &str> {
+    let names = model.masses.iter().map(|mass| mass.name.as_str());
+    names.filter(|name| !model.is_beam_mode(name))
+}
+
+/// The points of bodies.
+fn points(model: &Model) -> impl Iterator<Item = String> + '_ {
+    let bodies = model.bodies.iter();
+    bodies.flat_map(|body| body.points.iter().map(|point| body.node_name(point)))
+}
+
+/// The members of the model, and every mass and every point of a body with the ground.
 fn joints(model: &Model) -> Vec<[String; 2]> {
     let mut joints = model.members();
-    for mass in &model.masses {
-        let pair = [mass.name.clone(), GROUND.to_string()];
+    for node in places(model).map(String::from).chain(points(model)) {
+        let pair = [node, GROUND.to_string()];
         if !joints.iter().any(|known| same_pair(known, &pair)) {
             joints.push(pair);
         }
@@ -278,15 +293,24 @@ fn joints(model: &Model) -> Vec<[String; 2]> {
 }
 
 /// The joints, and every further pair of masses or of a mass and a base: a member that the model lacks
-/// may join what nothing joins.
+/// may join what nothing joins. What moves along is not joined to what turns, nor a body to its own points.
 fn pairs(model: &Model) -> Vec<[String; 2]> {
     let mut pairs = joints(model);
-    for (i, mass) in model.masses.iter().enumerate() {
-        let others = model.masses[i + 1..]
-            .iter()
-            .map(|other| other.name.as_str());
-        for other in others.chain(model.base_nodes()) {
-            let pair = [mass.name.clone(), other.to_string()];
+    let nodes: Vec<String> = places(model)
+        .map(String::from)
+        .chain(points(model))
+        .collect();
+    for (i, node) in nodes.iter().enumerate() {
+        let others = nodes[i + 1..].iter().map(String::as_str);
+        let one_body = |other: &&str| {
+            let of = |node: &str| model.body_of(node).map(|body| &body.name);
+            of(node).is_some() && of(node) == of(other)
+        };
+        let turns_alike = |other: &&str| model.is_roll(node) == model.is_roll(other);
+        let others = others.filter(|other| turns_alike(other) && !one_body(other));
+        let bases = model.base_nodes().into_iter();
+        for other in others.chain(bases.filter(turns_alike)) {
+            let pair = [node.clone(), other.to_string()];
             if !pairs.iter().any(|known| same_pair(known, &pair)) {
                 pairs.push(pair);
             }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue, sites};
-use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, OutputKind};
+use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, Node, OutputKind};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
 use crate::{Candidate, EstimateError, Whitening};
@@ -253,21 +253,18 @@ impl Problem {
     #[must_use]
     pub fn initial_guess(&self) -> Vec<Vec<f64>> {
         let n = self.model.dof_count();
-        let dof = |name: &Option<String>| {
-            name.as_ref()
-                .and_then(|name| self.model.masses.iter().position(|m| &m.name == name))
-        };
         self.runs
             .iter()
             .map(|run| {
                 let mut state = vec![0.0; 2 * n];
                 for (output, measured) in self.model.outputs.iter().zip(&run.measured) {
-                    let (Some(i), Some(values)) = (dof(&output.at), measured) else {
+                    let nodes = self.model.output_nodes(output);
+                    let (Ok([Node::Dof(i), Node::Ground]), Some(values)) = (nodes, measured) else {
                         continue;
                     };
                     let first = values.first().copied().unwrap_or(0.0);
                     match output.kind {
-                        OutputKind::Displacement => state[i] = first,
+                        OutputKind::Displacement | OutputKind::Roll => state[i] = first,
                         OutputKind::Velocity => state[n + i] = first,
                         OutputKind::Acceleration | OutputKind::Force => {}
                     }

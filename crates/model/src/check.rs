@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::uncertainty::LARGEST_UNCERTAINTY;
-use crate::{GROUND, InputKind, Location, Model, ModelError, OutputKind};
+use crate::{GROUND, InputKind, Location, Model, ModelError, Node, OutputKind};
 
 impl Model {
     /// Checks that the parts make a model; [`Model::from_toml`] has done so.
@@ -27,27 +27,43 @@ impl Model {
     }
 
     fn check_masses(&self) -> Result<(), ModelError> {
-        unique(
-            "mass",
-            self.masses
-                .iter()
-                .map(|m| m.name.as_str())
-                .chain(self.base_nodes()),
-        )?;
+        let points: Vec<String> = self.point_names().collect();
+        let names = self.masses.iter().map(|m| m.name.as_str());
+        let names = names.chain(self.base_nodes());
+        unique("mass", names.chain(points.iter().map(String::as_str)))?;
         for mass in &self.masses {
-            let place = item("mass", &mass.name);
+            let [table, quantity, needed] = self.told_mass(&mass.name);
+            let place = item(table, &mass.name);
             node_name(&place, &mass.name)?;
             if !(mass.value.is_finite() && mass.value > 0.0) {
                 return Err(ModelError::Value {
                     place,
-                    quantity: "value".into(),
+                    quantity: quantity.into(),
                     found: mass.value,
-                    needed: "a positive mass",
+                    needed,
                 });
             }
             check_uncertainty(&place, mass.uncertainty)?;
         }
+        let bodies = self.bodies.iter();
+        for (body, point) in bodies.flat_map(|b| b.points.iter().map(move |p| (b, p))) {
+            let place = item("point", &body.node_name(point));
+            node_name(&place, &point.name)?;
+            finite(&place, "offset", point.offset_m)?;
+        }
         Ok(())
+    }
+
+    /// Table and key of the model file that the inertia of a coordinate stands in, and what it must be.
+    fn told_mass(&self, name: &str) -> [&'static str; 3] {
+        let of_body = |body: &crate::Body| body.name == name || body.roll() == name;
+        if self.is_roll(name) {
+            ["body", "inertia", "a positive moment of inertia"]
+        } else if self.bodies.iter().any(of_body) {
+            ["body", "mass", "a positive mass"]
+        } else {
+            ["mass", "value", "a positive mass"]
+        }
     }
 
     fn check_members(&self) -> Result<(), ModelError> {
@@ -109,8 +125,8 @@ impl Model {
             check_uncertainty(&place, output.uncertainty)?;
             let force = output.kind == OutputKind::Force;
             match (&output.at, &output.between) {
-                (Some(at), None) if !force => {
-                    self.resolve_pair(&[at.clone(), at.clone()], || place.clone())?;
+                (Some(_), None) if !force => {
+                    self.output_nodes(output)?;
                 }
                 (None, Some(pair)) if force => self.check_pair(pair, &place)?,
                 _ => {
@@ -143,7 +159,7 @@ impl Model {
     }
 
     fn check_mass(&self, name: &str, place: &str) -> Result<(), ModelError> {
-        if self.masses.iter().any(|mass| mass.name == name) {
+        if matches!(self.node(name), Some(Node::Dof(_) | Node::Point(_))) {
             return Ok(());
         }
         Err(ModelError::UnknownNode {
@@ -152,7 +168,8 @@ impl Model {
             known: self
                 .masses
                 .iter()
-                .map(|mass| mass.name.as_str())
+                .map(|mass| mass.name.clone())
+                .chain(self.point_names())
                 .collect::<Vec<_>>()
                 .join(", "),
         })
@@ -205,7 +222,7 @@ fn unique<'a>(table: &str, names: impl Iterator<Item = &'a str>) -> Result<(), M
     Ok(())
 }
 
-fn node_name(place: &str, name: &str) -> Result<(), ModelError> {
+pub(crate) fn node_name(place: &str, name: &str) -> Result<(), ModelError> {
     if name == GROUND || name.trim().is_empty() {
         return Err(ModelError::BadName {
             place: place.into(),
@@ -225,6 +242,18 @@ fn finite(place: &str, quantity: &str, value: f64) -> Result<(), ModelError> {
         quantity: quantity.into(),
         found: value,
         needed: "a finite number",
+    })
+}
+
+pub(crate) fn finite_positive(place: &str, quantity: &str, value: f64) -> Result<(), ModelError> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(ModelError::Value {
+        place: place.into(),
+        quantity: quantity.into(),
+        found: value,
+        needed: "a positive number",
     })
 }
 

@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::body::{BodyFile, PointFile};
+use crate::check::item;
 use crate::{
-    Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError, Output, Pendulum, Spring,
+    Beam, Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError, Output, Pendulum,
+    Spring,
 };
 
 /// The schema this version reads and writes.
@@ -18,6 +21,12 @@ struct ModelFile {
     name: String,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     mass: Vec<Mass>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    body: Vec<BodyFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    point: Vec<PointFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    beam: Vec<Beam>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     spring: Vec<Spring>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -150,7 +159,7 @@ impl Model {
             .enumerate()
             .map(|(i, effect)| effect.into_entry(i))
             .collect::<Result<Vec<_>, _>>()?;
-        let model = Model {
+        let mut model = Model {
             name: file.name,
             masses: file.mass,
             springs: file.spring,
@@ -160,9 +169,32 @@ impl Model {
             loads: file.load,
             pendulums: file.pendulum,
             effects,
+            ..Model::default()
         };
+        file.body
+            .into_iter()
+            .for_each(|body| body.add_to(&mut model));
+        for point in file.point {
+            let place = item("point", &point.name);
+            let found = format!("body = \"{}\"", point.body);
+            let placed = point.add_to(&mut model);
+            placed.ok_or_else(|| ModelError::Shape {
+                place,
+                found,
+                needed: "the name of a [[body]]".into(),
+            })?;
+        }
+        for beam in file.beam {
+            model.add_beam(beam)?;
+        }
         model.check()?;
         Ok(model)
+    }
+
+    /// Whether the inertia of a coordinate is written with a body or a beam.
+    fn is_written_elsewhere(&self, coordinate: &str) -> bool {
+        let of_body = |body: &crate::Body| body.name == coordinate || body.roll() == coordinate;
+        self.bodies.iter().any(of_body) || self.is_beam_coordinate(coordinate)
     }
 
     /// Writes the model as the text of a model file; [`Model::from_toml`] reads it back unchanged.
@@ -173,8 +205,20 @@ impl Model {
         let file = ModelFile {
             schema: SCHEMA.into(),
             name: self.name.clone(),
-            mass: self.masses.clone(),
-            spring: self.springs.clone(),
+            mass: {
+                let own = self.masses.iter();
+                let own = own.filter(|mass| !self.is_written_elsewhere(&mass.name));
+                own.cloned().collect()
+            },
+            body: BodyFile::all_of(self),
+            point: PointFile::all_of(self),
+            beam: self.stated_beams(),
+            spring: {
+                let own = self.springs.iter();
+                own.filter(|spring| !self.is_of_beam(spring))
+                    .cloned()
+                    .collect()
+            },
             damper: self.dampers.clone(),
             input: self.inputs.clone(),
             output: self.outputs.clone(),

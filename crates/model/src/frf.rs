@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use faer::{Mat, c64};
 
-use crate::{Model, ModelError, Node, Output, OutputKind, StructuralMatrices};
+use crate::{Model, ModelError, Output, OutputKind, StructuralMatrices};
 
 /// Which motion a frequency response relates to force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,8 +91,11 @@ impl Model {
         let zero = c64::new(0.0, 0.0);
         let motion =
             |name: Option<&String>, force: usize| match name.and_then(|name| self.node(name)) {
-                Some(Node::Dof(i)) => receptance[(i, force)],
-                Some(Node::Ground | Node::Base(_)) | None => zero,
+                Some(node) => node
+                    .terms()
+                    .map(|(i, weight)| weight * receptance[(i, force)])
+                    .fold(zero, |sum, part| sum + part),
+                None => zero,
             };
         let response = |output: &Output, force: usize| {
             let of_node = |kind: FrfKind| kind.factor(omega) * motion(output.at.as_ref(), force);
@@ -107,6 +110,10 @@ impl Model {
                         * (motion(Some(a), force) - motion(Some(b), force))
                 }
                 (OutputKind::Force, None) => zero,
+                (OutputKind::Roll, _) => {
+                    let body = output.at.as_ref().and_then(|at| self.body_of(at));
+                    motion(body.map(crate::Body::roll).as_ref(), force)
+                }
             }
         };
         Ok(Mat::from_fn(

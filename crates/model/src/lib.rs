@@ -1,4 +1,4 @@
-//! Lumped models: masses, springs and dampers to M, C, K; modes; frequency responses; the model file.
+//! Lumped models: masses, bodies, beams, springs and dampers to M, C, K; modes; frequency responses; the model file.
 //!
 //! A model is read from text ([`Model::from_toml`]); this crate touches no files. Effects are carried
 //! as written ([`EffectEntry`]); the catalogue one floor up gives them meaning.
@@ -39,6 +39,8 @@
 
 #[cfg(feature = "ndarray")]
 mod arrays;
+mod beam;
+mod body;
 mod check;
 mod dense;
 mod error;
@@ -47,21 +49,27 @@ mod frf;
 mod matrices;
 mod model;
 mod modes;
+mod node;
+mod parameter;
 mod parts;
 mod sensitivity;
 mod serial;
 mod travel;
 mod uncertainty;
 
+pub use beam::{Beam, BeamValue};
+pub use body::{Body, Point};
 pub use error::ModelError;
 pub use file::SCHEMA;
 pub use frf::{FrfKind, frequency_response};
 pub use matrices::StructuralMatrices;
-pub use model::{Model, Node, same_pair};
+pub use model::{Model, same_pair};
 pub use modes::{DampedMode, UndampedModes, damped_modes, state_matrix, undamped_modes};
+pub use node::{BodyPoint, Node};
+pub use parameter::Parameter;
 pub use parts::{
     Damper, EffectEntry, GROUND, Input, InputKind, Load, Location, Mass, Output, OutputKind,
     Pendulum, Spring,
 };
-pub use sensitivity::{Parameter, PoleSensitivity, pole_sensitivities, receptance_sensitivity};
+pub use sensitivity::{PoleSensitivity, pole_sensitivities, receptance_sensitivity};
 pub use uncertainty::{DEFAULT_UNCERTAINTY, NominalQuantity};

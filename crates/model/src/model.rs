@@ -4,8 +4,8 @@ use faer::Mat;
 
 use crate::check::item;
 use crate::{
-    Damper, EffectEntry, GROUND, Input, InputKind, Load, Mass, ModelError, Output, Pendulum,
-    Spring, StructuralMatrices,
+    Beam, Body, Damper, EffectEntry, GROUND, Input, InputKind, Load, Mass, ModelError, Node,
+    Output, OutputKind, Pendulum, Spring, StructuralMatrices,
 };
 
 /// A lumped model of any number of degrees of freedom, none included.
@@ -14,14 +14,19 @@ use crate::{
 /// M ẍ + C ẋ + K x = F(t) + loads − pendulums − Kb b(t) − Cb ḃ(t)
 /// ```
 ///
-/// x are the displacements of the masses in the order of `masses`, b those of the moving base
-/// nodes in the order of [`Model::base_nodes`].
+/// x are the coordinates in the order of `masses`, b the displacements of the moving base nodes in the order of
+/// [`Model::base_nodes`]. Every coordinate has its inertia in `masses`: a mass one, a body two (heave and roll), a
+/// beam one for each mode and for a free end. A [`Node`] is a row over the coordinates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
     /// Name of the model.
     pub name: String,
-    /// One per degree of freedom.
+    /// The inertia of each coordinate: masses, then those of bodies and beams, then those that effects add.
     pub masses: Vec<Mass>,
+    /// Rigid bodies, whose coordinates are among the masses.
+    pub bodies: Vec<Body>,
+    /// Beams, whose coordinates are among the masses and whose static stiffness is among the springs.
+    pub beams: Vec<Beam>,
     /// Linear springs.
     pub springs: Vec<Spring>,
     /// Linear dampers.
@@ -36,17 +41,6 @@ pub struct Model {
     pub pendulums: Vec<Pendulum>,
     /// Effects added to the nominal model.
     pub effects: Vec<EffectEntry>,
-}
-
-/// A node of the model, resolved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Node {
-    /// Never moves.
-    Ground,
-    /// Degree of freedom, index into `masses`.
-    Dof(usize),
-    /// Moving base, index into [`Model::base_nodes`].
-    Base(usize),
 }
 
 impl Model {
@@ -69,10 +63,36 @@ impl Model {
         if let Some(i) = self.masses.iter().position(|mass| mass.name == name) {
             return Some(Node::Dof(i));
         }
+        if let Some(point) = self.body_point(name) {
+            return Some(point);
+        }
         self.base_nodes()
             .iter()
             .position(|&base| base == name)
             .map(Node::Base)
+    }
+
+    /// The two nodes whose difference an output reads: its node and the ground, or those of its members.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownNode`]; [`ModelError::Shape`] for a roll of what is no body.
+    pub fn output_nodes(&self, output: &Output) -> Result<[Node; 2], ModelError> {
+        let place = || item("output", &output.channel);
+        let ground = || GROUND.to_string();
+        let pair = match (&output.at, &output.between) {
+            (Some(at), _) if output.kind == OutputKind::Roll => {
+                let body = self.body_of(at).ok_or_else(|| ModelError::Shape {
+                    place: place(),
+                    found: format!("the roll of \"{at}\""),
+                    needed: "a body or a point of one".into(),
+                })?;
+                [body.roll(), ground()]
+            }
+            (Some(at), _) => [at.clone(), ground()],
+            (None, Some(pair)) => pair.clone(),
+            (None, None) => [ground(), ground()],
+        };
+        self.resolve_pair(&pair, place)
     }
 
     /// Number of degrees of freedom.
@@ -136,6 +156,9 @@ impl Model {
             let pair = self.resolve_pair(&damper.between, || item("damper", &damper.name))?;
             add_member(&mut matrices.damping_matrix, pair, damper.damping);
         }
+        for beam in &self.beams {
+            self.add_beam_matrices(beam, &mut matrices)?;
+        }
         Ok(matrices)
     }
 
@@ -181,8 +204,8 @@ impl Model {
     pub fn load_vector(&self) -> Vec<f64> {
         let mut loads = vec![0.0; self.dof_count()];
         for load in &self.loads {
-            if let Some(Node::Dof(i)) = self.node(&load.at) {
-                loads[i] += load.value;
+            if let Some(node) = self.node(&load.at) {
+                node.push(load.value, &mut loads);
             }
         }
         loads
@@ -210,7 +233,8 @@ impl Model {
     fn node_names(&self) -> Vec<String> {
         let masses = self.masses.iter().map(|mass| mass.name.clone());
         let bases = self.base_nodes().into_iter().map(String::from);
-        masses.chain(bases).chain([GROUND.to_string()]).collect()
+        let moving = masses.chain(self.point_names()).chain(bases);
+        moving.chain([GROUND.to_string()]).collect()
     }
 }
 
@@ -220,15 +244,15 @@ pub fn same_pair(a: &[String; 2], b: &[String; 2]) -> bool {
     a == b || (a[0] == b[1] && a[1] == b[0])
 }
 
+/// Adds `value r rᵀ` with r = row of a − row of b.
 fn add_member(matrix: &mut Mat<f64>, [a, b]: [Node; 2], value: f64) {
-    if let Node::Dof(i) = a {
-        matrix[(i, i)] += value;
-    }
-    if let Node::Dof(j) = b {
-        matrix[(j, j)] += value;
-    }
-    if let (Node::Dof(i), Node::Dof(j)) = (a, b) {
-        matrix[(i, j)] -= value;
-        matrix[(j, i)] -= value;
+    let row = || {
+        let of_b = b.terms().map(|(i, weight)| (i, -weight));
+        a.terms().chain(of_b)
+    };
+    for (i, of_i) in row() {
+        for (j, of_j) in row() {
+            matrix[(i, j)] += of_i * of_j * value;
+        }
     }
 }

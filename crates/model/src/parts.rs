@@ -72,7 +72,7 @@ pub struct Input {
     pub channel: String,
     /// Force or base displacement.
     pub kind: InputKind,
-    /// A mass, or the name of the base node.
+    /// A mass or a point of a body, or the name of the base node.
     pub at: String,
     /// Model unit per unit of the channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -94,6 +94,8 @@ pub enum OutputKind {
     Acceleration,
     /// The force carried by the members between two nodes, N or N m.
     Force,
+    /// The angle of a body, rad.
+    Roll,
 }
 
 /// What is compared.
@@ -104,7 +106,7 @@ pub struct Output {
     pub channel: String,
     /// The measured quantity.
     pub kind: OutputKind,
-    /// The node whose motion is measured.
+    /// The node whose motion is measured, or the body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<String>,
     /// For a force: the nodes between which the members carry it.

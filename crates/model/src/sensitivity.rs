@@ -6,21 +6,7 @@ use faer::{Mat, c64};
 
 use crate::dense;
 use crate::modes::balanced;
-use crate::{Model, ModelError, StructuralMatrices, frequency_response, state_matrix};
-
-/// A value of the model file that the linear part of the plant depends on, by its place in the list.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Parameter {
-    /// `value` of a mass.
-    Mass(usize),
-    /// `stiffness` of a spring.
-    Spring(usize),
-    /// `damping` of a damper.
-    Damper(usize),
-    /// `value` of a pendulum.
-    Pendulum(usize),
-}
+use crate::{Model, ModelError, Parameter, StructuralMatrices, frequency_response, state_matrix};
 
 /// A pole, and its derivative with respect to each parameter in the order of [`Model::parameters`].
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -45,45 +31,6 @@ const STEPS: usize = 100;
 const AT_REST: f64 = 1e-13;
 
 impl Model {
-    /// The parameters that M, C and K depend on, in the order of the file.
-    #[must_use]
-    pub fn parameters(&self) -> Vec<Parameter> {
-        let masses = (0..self.masses.len()).map(Parameter::Mass);
-        let springs = (0..self.springs.len()).map(Parameter::Spring);
-        let dampers = (0..self.dampers.len()).map(Parameter::Damper);
-        let pendulums = (0..self.pendulums.len()).map(Parameter::Pendulum);
-        masses
-            .chain(springs)
-            .chain(dampers)
-            .chain(pendulums)
-            .collect()
-    }
-
-    /// The value of a parameter; `None` where the model has no such part.
-    #[must_use]
-    pub fn parameter_value(&self, parameter: Parameter) -> Option<f64> {
-        match parameter {
-            Parameter::Mass(i) => self.masses.get(i).map(|mass| mass.value),
-            Parameter::Spring(i) => self.springs.get(i).map(|spring| spring.stiffness),
-            Parameter::Damper(i) => self.dampers.get(i).map(|damper| damper.damping),
-            Parameter::Pendulum(i) => self.pendulums.get(i).map(|pendulum| pendulum.value),
-        }
-    }
-
-    /// Table and item of a parameter, such as `spring "cylinder"`.
-    #[must_use]
-    pub fn parameter_name(&self, parameter: Parameter) -> String {
-        let named = |table: &str, name: Option<&String>| {
-            format!("{table} \"{}\"", name.map_or("", String::as_str))
-        };
-        match parameter {
-            Parameter::Mass(i) => named("mass", self.masses.get(i).map(|part| &part.name)),
-            Parameter::Spring(i) => named("spring", self.springs.get(i).map(|part| &part.name)),
-            Parameter::Damper(i) => named("damper", self.dampers.get(i).map(|part| &part.name)),
-            Parameter::Pendulum(i) => named("pendulum", self.pendulums.get(i).map(|part| &part.at)),
-        }
-    }
-
     /// Displacements at rest under the loads, moving bases at zero,
     ///
     /// ```text
@@ -104,8 +51,8 @@ impl Model {
                 .map(|i| loads[i] - (0..count).map(|j| linear[(i, j)] * at[j]).sum::<f64>())
                 .collect();
             for pendulum in &self.pendulums {
-                if let Some(crate::Node::Dof(i)) = self.node(&pendulum.at) {
-                    left[i] -= pendulum.value * at[i].sin();
+                if let Some(node) = self.node(&pendulum.at) {
+                    node.push(-pendulum.value * node.of(&at, &[]).sin(), &mut left);
                 }
             }
             if left.iter().all(|force| *force == 0.0) {
@@ -134,8 +81,14 @@ impl Model {
         self.check_count(displacements)?;
         let mut matrices = self.matrices()?;
         for pendulum in &self.pendulums {
-            if let Some(crate::Node::Dof(i)) = self.node(&pendulum.at) {
-                matrices.stiffness_matrix[(i, i)] += pendulum.value * displacements[i].cos();
+            let Some(node) = self.node(&pendulum.at) else {
+                continue;
+            };
+            let slope = pendulum.value * node.of(displacements, &[]).cos();
+            for (i, of_i) in node.terms() {
+                for (j, of_j) in node.terms() {
+                    matrices.stiffness_matrix[(i, j)] += of_i * of_j * slope;
+                }
             }
         }
         Ok(matrices)
@@ -162,19 +115,29 @@ impl Model {
         displacements: &[f64],
     ) -> Result<StructuralMatrices, ModelError> {
         self.check_count(displacements)?;
-        // The matrices are linear in every parameter: those of the part alone, with the value one.
-        let mut part = Model {
-            masses: self.masses.clone(),
-            inputs: self.inputs.clone(),
-            ..Model::default()
-        };
         let missing = || ModelError::Shape {
             place: "parameter".into(),
             found: format!("{parameter:?}"),
             needed: "a part of the model".into(),
         };
+        if let Parameter::Beam(i, value) = parameter {
+            let at = self.beam_value(i, value).ok_or_else(missing)?;
+            let mut part = self.beam_alone(i).ok_or_else(missing)?;
+            let [mass, damping, stiffness] = value.powers().map(|power| power / at);
+            part.mass_matrix *= faer::Scale(mass);
+            part.damping_matrix *= faer::Scale(damping);
+            part.stiffness_matrix *= faer::Scale(stiffness);
+            return Ok(part);
+        }
+        // The matrices are linear in the other parameters: those of the part alone, with the value one.
+        let mut part = Model {
+            masses: self.masses.clone(),
+            bodies: self.bodies.clone(),
+            inputs: self.inputs.clone(),
+            ..Model::default()
+        };
         match parameter {
-            Parameter::Mass(_) | Parameter::Pendulum(_) => (),
+            Parameter::Mass(_) | Parameter::Pendulum(_) | Parameter::Beam(..) => (),
             Parameter::Spring(i) => {
                 let mut spring = self.springs.get(i).ok_or_else(missing)?.clone();
                 spring.stiffness = 1.0;
@@ -192,12 +155,13 @@ impl Model {
             Parameter::Mass(i) if i < self.dof_count() => matrices.mass_matrix[(i, i)] = 1.0,
             Parameter::Mass(_) => return Err(missing()),
             Parameter::Pendulum(i) => {
-                let pendulum = self.pendulums.get(i).ok_or_else(missing)?;
-                if let Some(crate::Node::Dof(i)) = self.node(&pendulum.at) {
-                    matrices.stiffness_matrix[(i, i)] = displacements[i].cos();
-                }
+                let mut only = self.pendulums.get(i).ok_or_else(missing)?.clone();
+                only.value = 1.0;
+                let mut alone = part.clone();
+                alone.pendulums = vec![only];
+                matrices.stiffness_matrix = alone.linearise(displacements)?.stiffness_matrix;
             }
-            Parameter::Spring(_) | Parameter::Damper(_) => (),
+            Parameter::Spring(_) | Parameter::Damper(_) | Parameter::Beam(..) => (),
         }
         Ok(matrices)
     }

@@ -15,10 +15,14 @@ impl Model {
             Location::Mass(mass) => [self.node(mass)?, Node::Ground],
             Location::Input(_) | Location::Channel(_) => return None,
         };
+        // How a body that rolls is held, springs between nodes do not say.
+        if !self.bodies.is_empty() {
+            return None;
+        }
         let groups = self.groups();
         let [a, b] = nodes.map(|node| match node {
             Node::Dof(mass) => Some(groups[mass]),
-            Node::Ground | Node::Base(_) => None,
+            Node::Ground | Node::Base(_) | Node::Point(_) => None,
         });
         let moved = |group: usize, by: f64| -> Option<Vec<f64>> {
             let is_free = !self.is_placed(&groups, group);

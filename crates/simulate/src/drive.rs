@@ -36,7 +36,7 @@ pub(crate) struct DriveKey<'a> {
 struct Coupling {
     dof: usize,
     base: usize,
-    /// Zero: to the displacement; one: to the velocity.
+    /// Zero: to the displacement; one: to the velocity; two: to the acceleration.
     order: usize,
     coefficient: f64,
 }
@@ -86,11 +86,13 @@ impl Simulator {
             .collect();
         drive.base_count = base_inputs.len();
         for (i, signal) in inputs.iter().enumerate() {
-            let Some(Node::Dof(dof)) = self.model.node(&self.model.inputs[i].at) else {
+            let Some(node) = self.model.node(&self.model.inputs[i].at) else {
                 continue;
             };
-            for (sample, value) in signal.iter().enumerate() {
-                drive.dof_force[sample * n + dof] += value;
+            for (dof, weight) in node.terms() {
+                for (sample, value) in signal.iter().enumerate() {
+                    drive.dof_force[sample * n + dof] += weight * value;
+                }
             }
         }
         let motion: Vec<[Vec<f64>; 3]> = base_inputs
@@ -120,7 +122,7 @@ impl Simulator {
         Ok(drive)
     }
 
-    /// Springs and dampers to moving bases: they do k b + c ḃ to the masses.
+    /// Springs, dampers and beams to moving bases: they do k b + c ḃ − m b̈ to the coordinates.
     fn couplings(&self) -> Result<Vec<Coupling>, SimulateError> {
         let springs = self
             .model
@@ -135,15 +137,23 @@ impl Simulator {
         let mut couplings = Vec::new();
         for (between, order, coefficient) in springs.chain(dampers) {
             let pair = self.model.resolve_pair(between, || "member".into())?;
-            if let [Node::Dof(dof), Node::Base(base)] | [Node::Base(base), Node::Dof(dof)] = pair {
-                couplings.push(Coupling {
-                    dof,
-                    base,
-                    order,
-                    coefficient,
-                });
-            }
+            let ([other, Node::Base(base)] | [Node::Base(base), other]) = pair else {
+                continue;
+            };
+            couplings.extend(other.terms().map(|(dof, weight)| Coupling {
+                dof,
+                base,
+                order,
+                coefficient: weight * coefficient,
+            }));
         }
+        let inertia = self.model.base_inertia().into_iter();
+        couplings.extend(inertia.map(|(dof, base, mass)| Coupling {
+            dof,
+            base,
+            order: 2,
+            coefficient: -mass,
+        }));
         Ok(couplings)
     }
 }

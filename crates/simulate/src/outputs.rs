@@ -26,12 +26,7 @@ pub(crate) struct BaseMotion<'a> {
 
 /// Value at node a minus value at node b.
 pub(crate) fn across([a, b]: [Node; 2], dofs: &[f64], bases: &[f64]) -> f64 {
-    let value = |node| match node {
-        Node::Ground => 0.0,
-        Node::Dof(i) => dofs[i],
-        Node::Base(i) => bases[i],
-    };
-    value(a) - value(b)
+    a.of(dofs, bases) - b.of(dofs, bases)
 }
 
 /// Where the base nodes of eight sets are at one sample.
@@ -68,7 +63,7 @@ impl OutputPlan {
         let displacement = || self.across_lanes(at.displacement, |i| at.base_displacement[i]);
         let velocity = || self.across_lanes(at.velocity, |i| at.base_velocity[i]);
         match self.kind {
-            OutputKind::Displacement => displacement(),
+            OutputKind::Displacement | OutputKind::Roll => displacement(),
             OutputKind::Velocity => velocity(),
             OutputKind::Acceleration => {
                 self.across_lanes(at.acceleration, |i| base.acceleration(i))
@@ -92,6 +87,10 @@ impl OutputPlan {
             Node::Ground => Pack::ZERO,
             Node::Dof(i) => dofs[i],
             Node::Base(i) => of_base(i),
+            Node::Point(point) => {
+                let (heave, roll) = (&dofs[point.heave], &dofs[point.roll]);
+                Pack::of(|l| heave.0[l] + point.arm_m() * roll.0[l])
+            }
         };
         let (a, b) = (value(self.a), value(self.b));
         Pack::of(|l| a.0[l] - b.0[l])
@@ -109,7 +108,9 @@ impl OutputPlan {
     ) -> f64 {
         let across = |dofs: &[f64], bases: &[f64]| across([self.a, self.b], dofs, bases);
         match self.kind {
-            OutputKind::Displacement => across(at.displacement, base.displacement),
+            OutputKind::Displacement | OutputKind::Roll => {
+                across(at.displacement, base.displacement)
+            }
             OutputKind::Velocity => across(at.velocity, base.velocity),
             OutputKind::Acceleration => across(acceleration, base.acceleration),
             OutputKind::Force => {
@@ -134,17 +135,13 @@ pub(crate) fn output_plans(
 ) -> Result<Vec<OutputPlan>, ModelError> {
     let mut plans = Vec::with_capacity(model.outputs.len());
     for output in &model.outputs {
-        let place = || format!("[[output]] \"{}\"", output.channel);
-        let ground = simgap_model::GROUND.to_string();
-        let pair = match (&output.at, &output.between) {
-            (Some(at), _) => [at.clone(), ground],
-            (None, Some(pair)) => pair.clone(),
-            (None, None) => [ground.clone(), ground],
-        };
-        let [a, b] = model.resolve_pair(&pair, place)?;
+        let [a, b] = model.output_nodes(output)?;
         // A force is positive when a is displaced from b in the positive direction, and so is the
         // force of a member whichever way round it is written.
-        let [stiffness, damping] = model.stiffness_and_damping(&pair);
+        let [stiffness, damping] = match &output.between {
+            Some(pair) => model.stiffness_and_damping(pair),
+            None => [0.0; 2],
+        };
         let joined = elements.iter().enumerate().filter_map(|(i, element)| {
             if !carried[i] {
                 None

@@ -192,7 +192,7 @@ pub fn input_quantity(kind: InputKind) -> Quantity {
 #[must_use]
 pub fn output_quantity(kind: OutputKind) -> Quantity {
     match kind {
-        OutputKind::Displacement => Quantity::Displacement,
+        OutputKind::Displacement | OutputKind::Roll => Quantity::Displacement,
         OutputKind::Velocity => Quantity::Velocity,
         OutputKind::Acceleration => Quantity::Acceleration,
         OutputKind::Force => Quantity::Force,
@@ -210,6 +210,7 @@ pub fn output_unit(output: &Output, record: &Record) -> &'static str {
             OutputKind::Velocity => "m/s",
             OutputKind::Acceleration => "m/s^2",
             OutputKind::Force => "N",
+            OutputKind::Roll => "rad",
         },
     }
 }

@@ -80,7 +80,7 @@ pub(crate) fn output_unit(model: &Model, kind: OutputKind) -> &'static str {
         (OutputKind::Velocity, false) => "m/s",
         (OutputKind::Acceleration, false) => "m/s^2",
         (OutputKind::Force, false) => "N",
-        (OutputKind::Displacement, true) => "rad",
+        (OutputKind::Roll, _) | (OutputKind::Displacement, true) => "rad",
         (OutputKind::Velocity, true) => "rad/s",
         (OutputKind::Acceleration, true) => "rad/s^2",
         (OutputKind::Force, true) => "N m",

@@ -65,27 +65,15 @@ pub(super) struct Plant<'a> {
     free_velocity: Vec<f64>,
 }
 
-fn project(node: Node, values: &[f64], bases: &[f64]) -> f64 {
-    match node {
-        Node::Ground => 0.0,
-        Node::Dof(i) => values[i],
-        Node::Base(i) => bases[i],
-    }
-}
-
 /// What stands at the end of an element less what stands at the other.
 fn across(element: &Element, values: &[f64], bases: &[f64]) -> f64 {
-    project(element.a, values, bases) - project(element.b, values, bases)
+    element.a.of(values, bases) - element.b.of(values, bases)
 }
 
 /// Adds what a force carried by an element does to the degrees of freedom.
 pub(super) fn spread(element: &Element, force: f64, dof_force: &mut [f64]) {
-    if let Node::Dof(i) = element.a {
-        dof_force[i] -= force;
-    }
-    if let Node::Dof(i) = element.b {
-        dof_force[i] += force;
-    }
+    element.a.push(-force, dof_force);
+    element.b.push(force, dof_force);
 }
 
 impl<'a> Plant<'a> {
@@ -111,12 +99,9 @@ impl<'a> Plant<'a> {
                     })
                     .collect();
                 for i in 0..m {
-                    let at = |node| {
-                        if let Node::Dof(k) = node {
-                            moved[k]
-                        } else {
-                            0.0
-                        }
+                    let at = |node: Node| match node {
+                        Node::Ground | Node::Base(_) => 0.0,
+                        Node::Dof(_) | Node::Point(_) => node.of(&moved, &[]),
                     };
                     // Pushed by −E: a positive force moves its own element back.
                     folded[i * m + j] = -(at(elements[i].a) - at(elements[i].b));

@@ -96,7 +96,12 @@ fn changes(nominal: &Model, corrected: &Model) -> Vec<(bool, Vec<String>)> {
         rows.push((false, vec![name, shown(was), shown(is), change(relative)]));
     };
     for (a, b) in nominal.masses.iter().zip(&corrected.masses) {
-        add(format!("mass {}", a.name), "kg", a.value, b.value);
+        let [what, unit] = if nominal.is_roll(&a.name) {
+            ["inertia", "kg m^2"]
+        } else {
+            ["mass", "kg"]
+        };
+        add(format!("{what} {}", a.name), unit, a.value, b.value);
     }
     for (a, b) in nominal.springs.iter().zip(&corrected.springs) {
         add(

@@ -88,10 +88,7 @@ pub(crate) fn missing_force(
     let ends = ends(model, &motion.at)?;
     let n = model.dof_count();
     let across = |state: &[f64], first: usize| -> f64 {
-        let value = |node: Node| match node {
-            Node::Dof(i) => state[first + i],
-            Node::Ground | Node::Base(_) => 0.0,
-        };
+        let value = |node: Node| -> f64 { node.terms().map(|(i, w)| w * state[first + i]).sum() };
         value(ends[0]) - value(ends[1])
     };
     let skip = (ENDS * smoothed.len() as f64) as usize;
@@ -261,9 +258,12 @@ fn accelerations(structure: &StructuralMatrices, ends: &[Node; 2]) -> Option<Vec
     // With C set to 1 at one column, the state matrix holds −M⁻¹ of it.
     let mut unit = structure.clone();
     unit.damping_matrix = Mat::from_fn(n, n, |i, j| {
-        let sign = |node: Node, value: f64| if node == Node::Dof(i) { value } else { 0.0 };
+        let weight = |node: Node| -> f64 {
+            let here = node.terms().filter(|(dof, _)| *dof == i);
+            here.map(|(_, weight)| weight).sum()
+        };
         if j == 0 {
-            sign(ends[0], 1.0) + sign(ends[1], -1.0)
+            weight(ends[0]) - weight(ends[1])
         } else {
             0.0
         }
@@ -281,8 +281,8 @@ fn row(model: &Model, output: &Output, at: &Location, rate: &Mat<f64>) -> Option
         let nodes = [model.node(&pair[0])?, model.node(&pair[1])?];
         let mut add = |offset: usize, value: f64| {
             for (node, sign) in nodes.iter().zip([1.0, -1.0]) {
-                if let Node::Dof(i) = node {
-                    row[offset + i] += sign * value;
+                for (i, weight) in node.terms() {
+                    row[offset + i] += sign * weight * value;
                 }
             }
         };
@@ -296,18 +296,21 @@ fn row(model: &Model, output: &Output, at: &Location, rate: &Mat<f64>) -> Option
         }
         return Some(row);
     }
-    let Node::Dof(i) = model.node(output.at.as_ref()?)? else {
+    let [node, _] = model.output_nodes(output).ok()?;
+    if matches!(node, Node::Ground | Node::Base(_)) {
         return None;
-    };
-    match output.kind {
-        OutputKind::Displacement => row[i] = 1.0,
-        OutputKind::Velocity => row[n + i] = 1.0,
-        OutputKind::Acceleration => {
-            for (j, value) in row.iter_mut().enumerate() {
-                *value = rate[(n + i, j)];
+    }
+    for (i, weight) in node.terms() {
+        match output.kind {
+            OutputKind::Displacement | OutputKind::Roll => row[i] += weight,
+            OutputKind::Velocity => row[n + i] += weight,
+            OutputKind::Acceleration => {
+                for (j, value) in row.iter_mut().enumerate() {
+                    *value += weight * rate[(n + i, j)];
+                }
             }
+            OutputKind::Force => {}
         }
-        OutputKind::Force => {}
     }
     Some(row)
 }

@@ -1,7 +1,7 @@
 //! Eight sets within the march.
 
 use pulp::{Arch, Simd};
-use simgap_model::Node;
+use simgap_model::{BodyPoint, Node};
 
 use super::batch::LaneSet;
 use super::kernel::LaneKernel;
@@ -33,17 +33,22 @@ pub(super) struct Block<'a> {
 
 /// Value at a node.
 #[inline(always)]
-fn at(node: Node, values: &[Pack], bases: &[Pack]) -> Pack {
+fn at<S: Simd>(simd: S, node: Node, values: &[Pack], bases: &[Pack]) -> Pack {
     match node {
         Node::Ground => Pack::ZERO,
         Node::Dof(i) => entry(values, i),
         Node::Base(i) => bases[i],
+        Node::Point(point) => {
+            let heave = Wide::of(simd, &entry(values, point.heave));
+            let roll = Wide::of(simd, &entry(values, point.roll));
+            (heave + Wide::splat(simd, point.arm_m()) * roll).pack()
+        }
     }
 }
 
 #[inline(always)]
 fn across<S: Simd>(simd: S, [a, b]: [Node; 2], values: &[Pack], bases: &[Pack]) -> Pack {
-    let of_node = |node| Wide::of(simd, &at(node, values, bases));
+    let of_node = |node| Wide::of(simd, &at(simd, node, values, bases));
     (of_node(a) - of_node(b)).pack()
 }
 
@@ -66,12 +71,28 @@ pub(super) fn motion_across<S: Simd, R: Row>(
 #[inline(always)]
 fn spread<S: Simd>(simd: S, [a, b]: [Node; 2], force: &Pack, dof_force: &mut [Pack]) {
     let force = Wide::of(simd, force);
-    if let Node::Dof(i) = a {
-        change(dof_force, i, |f| (Wide::of(simd, f) - force).pack());
+    match a {
+        Node::Dof(i) => change(dof_force, i, |f| (Wide::of(simd, f) - force).pack()),
+        Node::Point(point) => push_body(simd, point, Wide::zero(simd) - force, dof_force),
+        Node::Ground | Node::Base(_) => {}
     }
-    if let Node::Dof(i) = b {
-        change(dof_force, i, |f| (Wide::of(simd, f) + force).pack());
+    match b {
+        Node::Dof(i) => change(dof_force, i, |f| (Wide::of(simd, f) + force).pack()),
+        Node::Point(point) => push_body(simd, point, force, dof_force),
+        Node::Ground | Node::Base(_) => {}
     }
+}
+
+/// Adds what a force on a point of a body does to its heave and roll.
+#[inline(always)]
+fn push_body<S: Simd>(simd: S, point: BodyPoint, force: Wide<S>, dof_force: &mut [Pack]) {
+    let torque = Wide::splat(simd, point.arm_m()) * force;
+    change(dof_force, point.heave, |f| {
+        (Wide::of(simd, f) + force).pack()
+    });
+    change(dof_force, point.roll, |f| {
+        (Wide::of(simd, f) + torque).pack()
+    });
 }
 
 /// `value − (a b + c d)`.
