@@ -142,14 +142,7 @@ pub fn compare(
 fn model(pairing: &Pairing) -> Model {
     let mut model = Model {
         name: "simulation".to_string(),
-        masses: vec![],
-        springs: vec![],
-        dampers: vec![],
-        inputs: vec![],
-        outputs: vec![],
-        loads: vec![],
-        pendulums: vec![],
-        effects: vec![],
+        ..Model::default()
     };
     for trace in &pairing.traces {
         let node = predicted_name(&trace.channel);
