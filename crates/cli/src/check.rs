@@ -244,7 +244,9 @@ pub(crate) fn role(unit: &str) -> &'static str {
         Some(Quantity::Displacement) => "output, or base input: displacement",
         Some(Quantity::Velocity) => "output: velocity",
         Some(Quantity::Acceleration) => "output: acceleration",
-        None => "either, with a gain",
+        Some(Quantity::Pressure | Quantity::Flow | Quantity::Number) | None => {
+            "either, with a gain"
+        }
     }
 }
 

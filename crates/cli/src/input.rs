@@ -140,14 +140,15 @@ pub(crate) fn idle_masses(model: &Model) -> Vec<String> {
                 _ => false,
             })
     };
-    // Of a body, its points may be used instead; a beam joins by itself.
-    let alone = |name: &str| model.body_of(name).is_none() && !model.is_beam_coordinate(name);
-    let masses = model.masses.iter().filter(|mass| alone(&mass.name));
-    let joined_by_beam = |name: &str| {
-        let mut beams = model.beams.iter();
-        beams.any(|beam| between(&beam.between, name))
+    // Of a body, its points may be used instead; beams, cylinders and blocks join by themselves.
+    let own = |name: &str| model.body_of(name).is_some() || model.is_beam_coordinate(name);
+    let beams = model.beams.iter().map(|beam| &beam.between);
+    let cylinders = model.cylinders.iter().map(|cylinder| &cylinder.between);
+    let joined: Vec<&String> = beams.chain(cylinders).flatten().collect();
+    let is_idle = |name: &String| {
+        !(used(name) || own(name) || model.is_internal(name) || joined.contains(&name))
     };
-    let masses = masses.filter(|mass| !used(&mass.name) && !joined_by_beam(&mass.name));
+    let masses = model.masses.iter().filter(|mass| is_idle(&mass.name));
     masses
         .map(|mass| {
             format!(

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::Serialize;
-use simgap_model::{DampedMode, InputKind, Model, Node, damped_modes};
+use simgap_model::{DampedMode, InputKind, Model, damped_modes_of};
 use simgap_record::write_text_atomic;
 use simgap_report::chart::{LineChart, Role, Scale, Series};
 
@@ -89,7 +89,7 @@ pub(crate) fn run(args: &ModesArgs) -> Result<(), CliError> {
     };
     let (at, mut notes) = operating_point(&model);
     let structure = model.linearise(&at).map_err(failed)?;
-    let mut found = damped_modes(&structure).map_err(failed)?;
+    let mut found = damped_modes_of(&structure, &model.first_order()).map_err(failed)?;
     snap_to_zero(&mut found);
     let responses = responses(&model, &found, &at, &mut notes).map_err(failed)?;
     let result = Modes {
@@ -209,21 +209,7 @@ fn responses(
     at: &[f64],
     notes: &mut Vec<String>,
 ) -> Result<Vec<Response>, simgap_model::ModelError> {
-    let driven = model
-        .inputs
-        .iter()
-        .filter(|input| input.kind == InputKind::Force);
-    let mut forced: Vec<(String, Node)> = driven
-        .filter_map(|input| Some((input.at.clone(), model.node(&input.at)?)))
-        .collect();
-    forced.dedup();
-    if forced.is_empty() {
-        let each = model.masses.iter().enumerate();
-        forced = each
-            .filter(|(_, mass)| !model.is_beam_mode(&mass.name))
-            .map(|(i, mass)| (mass.name.clone(), Node::Dof(i)))
-            .collect();
-    }
+    let forced = driven(model)?;
     let freqs = frequencies(modes);
     // Response of the linearised plant: pendulums stand at the operating point.
     let mut tangent = model.clone();
@@ -252,10 +238,10 @@ fn responses(
     }
     let mut found = vec![];
     for (row, output) in model.outputs.iter().enumerate() {
-        for (name, node) in &forced {
+        for (name, terms) in &forced {
             let curve = || {
                 values.iter().map(|matrix| {
-                    let parts = node.terms().map(|(i, weight)| matrix[(row, i)] * weight);
+                    let parts = terms.iter().map(|(i, weight)| matrix[(row, *i)] * *weight);
                     parts.reduce(|sum, part| sum + part).unwrap_or_default()
                 })
             };
@@ -269,6 +255,28 @@ fn responses(
         }
     }
     Ok(found)
+}
+
+/// What a response is to: a name, and coordinates with weights.
+type Driven = (String, Vec<(usize, f64)>);
+
+/// What the inputs drive but moving bases, or every mass with a force if they drive nothing.
+fn driven(model: &Model) -> Result<Vec<Driven>, simgap_model::ModelError> {
+    let mut driven: Vec<Driven> = vec![];
+    for (i, input) in model.inputs.iter().enumerate() {
+        if input.kind != InputKind::Displacement {
+            driven.push((input.at.clone(), model.input_terms(i)?));
+        }
+    }
+    driven.dedup();
+    if driven.is_empty() {
+        let each = model.masses.iter().enumerate();
+        let places = each.filter(|(_, mass)| !model.is_internal(&mass.name));
+        driven = places
+            .map(|(i, mass)| (mass.name.clone(), vec![(i, 1.0)]))
+            .collect();
+    }
+    Ok(driven)
 }
 
 /// Equal ratios from well below the lowest to well above the highest pole away from zero.

@@ -52,6 +52,10 @@ pub enum SiteKind {
     Pendulum,
     /// A mass with a known constant force.
     Load,
+    /// The two chambers of a cylinder.
+    Chambers,
+    /// The spool of a valve.
+    Spool,
     /// An input channel.
     Input,
     /// An output channel.

@@ -171,8 +171,9 @@ impl SiteKind {
             | SiteKind::GroundSpring
             | SiteKind::Damper
             | SiteKind::NoSpring
-            | SiteKind::NoDamper => MEMBER,
-            SiteKind::Mass | SiteKind::Pendulum | SiteKind::Load => MASS,
+            | SiteKind::NoDamper
+            | SiteKind::Chambers => MEMBER,
+            SiteKind::Mass | SiteKind::Pendulum | SiteKind::Load | SiteKind::Spool => MASS,
             SiteKind::Input => INPUT,
             SiteKind::Channel => CHANNEL,
         }
@@ -190,6 +191,12 @@ impl SiteKind {
         )
     }
 
+    /// Whether it is a part of a hydraulic drive.
+    #[must_use]
+    pub fn is_hydraulic(self) -> bool {
+        matches!(self, SiteKind::Chambers | SiteKind::Spool)
+    }
+
     /// The same in words.
     #[must_use]
     pub fn words(self) -> &'static str {
@@ -203,6 +210,8 @@ impl SiteKind {
             SiteKind::Mass => "a mass",
             SiteKind::Pendulum => "a mass with a pendulum",
             SiteKind::Load => "a mass with a load",
+            SiteKind::Chambers => "the two chambers of a cylinder",
+            SiteKind::Spool => "the spool of a valve",
             SiteKind::Input => "an input",
             SiteKind::Channel => "an output",
         }
@@ -247,6 +256,16 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
             let mut loads = model.loads.iter();
             loads.any(|load| load.at == mass && load.value != 0.0)
         }),
+        SiteKind::Chambers => {
+            let cylinders = model.cylinders.iter();
+            cylinders
+                .map(|cylinder| Location::Between(cylinder.chambers()))
+                .collect()
+        }
+        SiteKind::Spool => {
+            let valves = model.valves.iter();
+            valves.map(|valve| Location::Mass(valve.spool())).collect()
+        }
         SiteKind::Input => model
             .inputs
             .iter()
@@ -268,10 +287,10 @@ fn masses(model: &Model, keep: impl Fn(&str) -> bool) -> Vec<Location> {
         .collect()
 }
 
-/// The coordinates that are places: a mode of a beam is a shape.
+/// The coordinates that are places: a mode of a beam is a shape, a pressure a state.
 fn places(model: &Model) -> impl Iterator<Item = &str> {
     let names = model.masses.iter().map(|mass| mass.name.as_str());
-    names.filter(|name| !model.is_beam_mode(name))
+    names.filter(|name| !model.is_internal(name))
 }
 
 /// The points of bodies.

@@ -163,7 +163,7 @@ fn verify_an_unknown_kind_is_answered_with_the_catalogue() {
 
 #[test]
 fn verify_values_that_are_no_numbers_are_refused() {
-    let model = model();
+    let model = common::hydraulic();
     for &effect in catalogue() {
         let at = sites(&model, effect.site()).swap_remove(0);
         let good = effect.starts(&common::scale()).swap_remove(0);
@@ -180,6 +180,90 @@ fn verify_values_that_are_no_numbers_are_refused() {
                 );
             }
         }
+    }
+}
+
+const BODY: &str = r#"
+[[body]]
+name = "table"
+mass = 5.0
+inertia = 2.0
+
+[[point]]
+name = "left"
+body = "table"
+offset = -0.5
+
+[[beam]]
+name = "leaf"
+between = ["table.left", "load"]
+length = 0.5
+width = 0.05
+thickness = 0.002
+youngs_modulus = 2.1e11
+density = 7850.0
+"#;
+
+#[test]
+fn verify_points_of_bodies_are_places_and_modes_of_beams_are_none() {
+    let model = Model::from_toml(&format!("{MODEL}{BODY}")).unwrap();
+    let names = |kind: SiteKind| -> Vec<String> {
+        sites(&model, kind)
+            .iter()
+            .map(ToString::to_string)
+            .collect()
+    };
+    let members = names(SiteKind::Member);
+    for place in [
+        "table.left and load",
+        "table.left and ground",
+        "table.roll and ground",
+    ] {
+        assert!(
+            members.contains(&format!("between {place}")),
+            "{place} of {members:?}"
+        );
+    }
+    let all = [SiteKind::Member, SiteKind::NoSpring, SiteKind::Mass]
+        .map(&names)
+        .concat();
+    assert!(all.iter().all(|place| !place.contains("mode1")), "{all:?}");
+    // What turns is not joined to what moves along, nor a body to its own points.
+    let apart = names(SiteKind::NoDamper);
+    for nonsense in [
+        "table and table.roll",
+        "table.roll and carriage",
+        "table and table.left",
+    ] {
+        let [a, b] = [0, 1].map(|k| nonsense.split(" and ").nth(k).unwrap());
+        let either = [
+            format!("between {a} and {b}"),
+            format!("between {b} and {a}"),
+        ];
+        assert!(
+            !either.iter().any(|place| apart.contains(place)),
+            "{nonsense}"
+        );
+    }
+    // A point has no mass of its own that could be wrong.
+    let entry = |kind: &str, value: (&str, f64)| EffectEntry {
+        kind: kind.into(),
+        at: Location::Mass("table.left".into()),
+        parameters: [(value.0.to_string(), value.1)].into(),
+    };
+    assert!(Placed::from_entry(&model, &entry("mass_error", ("mass_factor", 1.1))).is_err());
+    assert!(Placed::from_entry(&model, &entry("constant_force", ("force_n", 1.0))).is_ok());
+}
+
+#[test]
+fn verify_hydraulic_effects_sit_on_cylinders_and_valves_alone() {
+    let model = common::hydraulic();
+    let place = |kind| sites(&model, kind)[0].to_string();
+    assert_eq!(place(SiteKind::Chambers), "between drive.p1 and drive.p2");
+    assert_eq!(place(SiteKind::Spool), "mass servo.spool");
+    let plain = common::model();
+    for kind in [SiteKind::Member, SiteKind::NoSpring, SiteKind::Mass] {
+        assert_eq!(sites(&model, kind), sites(&plain, kind));
     }
 }
 

@@ -419,7 +419,13 @@ pub(crate) fn state_scale(problem: &Problem) -> Vec<f64> {
         1e-3
     };
     let velocity = size / (100.0 * step);
-    (0..2 * n)
-        .map(|i| if i < n { size } else { velocity })
-        .collect()
+    // Coordinates that are no places are scaled to about one.
+    let own = problem.model.masses.iter();
+    let is_scaled: Vec<bool> = own.map(|m| problem.model.has_own_scale(&m.name)).collect();
+    let scale = |i: usize| match i {
+        i if is_scaled[i % n] => 1.0,
+        i if i < n => size,
+        _ => velocity,
+    };
+    (0..2 * n).map(scale).collect()
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue, sites};
-use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, Node, OutputKind};
+use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, Node, OutputKind, PRESSURE_UNIT_PA};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
 use crate::{Candidate, EstimateError, Whitening};
@@ -266,7 +266,13 @@ impl Problem {
                     match output.kind {
                         OutputKind::Displacement | OutputKind::Roll => state[i] = first,
                         OutputKind::Velocity => state[n + i] = first,
-                        OutputKind::Acceleration | OutputKind::Force => {}
+                        OutputKind::Spool => state[i] = first,
+                        OutputKind::Pressure => {
+                            let at = output.at.as_ref().and_then(|at| self.model.chamber(at));
+                            let start = at.map_or(0.0, |(c, chamber)| c.pressures[chamber]);
+                            state[n + i] = (first - start) / PRESSURE_UNIT_PA;
+                        }
+                        OutputKind::Acceleration | OutputKind::Force | OutputKind::Flow => {}
                     }
                 }
                 state

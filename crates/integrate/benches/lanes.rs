@@ -67,11 +67,7 @@ fn set(plant: Plant, share: f64) -> (ExactPropagator, Vec<Element>) {
             stiffness_matrix: faer::mat![[1800.0, -900.0], [-900.0, 1200.0 * size]],
         },
     };
-    let element = |law: Box<dyn ForceLaw>| Element {
-        a: Node::Dof(0),
-        b: Node::Ground,
-        law,
-    };
+    let element = |law: Box<dyn ForceLaw>| Element::between(Node::Dof(0), Node::Ground, law);
     let cubic = || element(Box::new(Cubic { factor: 2e6 * size }));
     let friction = || element(Box::new(Coulomb { level: 1.5 * size }));
     let elements = match plant {

@@ -36,11 +36,7 @@ impl ForceLaw for Coulomb {
 }
 
 fn to_ground(law: impl ForceLaw + 'static) -> Vec<Element> {
-    vec![Element {
-        a: Node::Dof(0),
-        b: Node::Ground,
-        law: Box::new(law),
-    }]
+    vec![Element::between(Node::Dof(0), Node::Ground, Box::new(law))]
 }
 
 /// Marches one mass; returns displacement, velocity, acceleration and element force per sample.
@@ -299,11 +295,7 @@ fn verify_two_elements_between_two_masses() {
         damping_matrix: Mat::zeros(2, 2),
         stiffness_matrix: Mat::zeros(2, 2),
     };
-    let between = |law: Box<dyn ForceLaw>| Element {
-        a: Node::Dof(0),
-        b: Node::Dof(1),
-        law,
-    };
+    let between = |law: Box<dyn ForceLaw>| Element::between(Node::Dof(0), Node::Dof(1), law);
     let elements = [
         between(Box::new(Coulomb(0.5))),
         between(Box::new(Law(|m| 3e3 * m.displacement.powi(3)))),

@@ -229,7 +229,7 @@ fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], drive: &Rc<Drive
             }),
             _ => Box::new(Alone(cubic)),
         };
-        Element { a, b, law }
+        Element::between(a, b, law)
     });
     Set {
         propagator: ExactPropagator::new(&structure, STEP_S / substeps as f64).unwrap(),

@@ -16,6 +16,11 @@ impl Model {
         self.check_inputs()?;
         self.check_outputs()?;
         self.check_forces()?;
+        self.check_blocks()?;
+        for cylinder in &self.cylinders {
+            let place = item("cylinder", &cylinder.name);
+            self.check_pair(&cylinder.between, &place)?;
+        }
         for (i, effect) in self.effects.iter().enumerate() {
             let place = format!("[[effect]] {} \"{}\"", i + 1, effect.kind);
             self.check_location(&effect.at, &place)?;
@@ -105,6 +110,14 @@ impl Model {
             match input.kind {
                 InputKind::Force => self.check_mass(&input.at, &place)?,
                 InputKind::Displacement => node_name(&place, &input.at)?,
+                InputKind::Command => {
+                    let names = self.valves.iter().map(|valve| &valve.name);
+                    is_one_of(&place, &input.at, names, "the name of a [[valve]]")?;
+                }
+                InputKind::SetPoint => {
+                    let names = self.blocks.iter().map(|block| &block.name);
+                    is_one_of(&place, &input.at, names, "the name of a [[block]]")?;
+                }
             }
         }
         Ok(())
@@ -158,7 +171,7 @@ impl Model {
         Ok(())
     }
 
-    fn check_mass(&self, name: &str, place: &str) -> Result<(), ModelError> {
+    pub(crate) fn check_mass(&self, name: &str, place: &str) -> Result<(), ModelError> {
         if matches!(self.node(name), Some(Node::Dof(_) | Node::Point(_))) {
             return Ok(());
         }
@@ -208,6 +221,22 @@ impl Model {
 /// How an error names an item: `[[table]] "name"`.
 pub(crate) fn item(table: &str, name: &str) -> String {
     format!("[[{table}]] \"{name}\"")
+}
+
+fn is_one_of<'a>(
+    place: &str,
+    found: &str,
+    mut names: impl Iterator<Item = &'a String>,
+    needed: &str,
+) -> Result<(), ModelError> {
+    if names.any(|name| name == found) {
+        return Ok(());
+    }
+    Err(ModelError::Shape {
+        place: place.into(),
+        found: format!("at = \"{found}\""),
+        needed: needed.into(),
+    })
 }
 
 fn unique<'a>(table: &str, names: impl Iterator<Item = &'a str>) -> Result<(), ModelError> {

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::body::{BodyFile, PointFile};
 use crate::check::item;
 use crate::{
-    Beam, Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError, Output, Pendulum,
-    Spring,
+    Beam, Block, Cylinder, Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError,
+    Output, Pendulum, Spring, Valve,
 };
 
 /// The schema this version reads and writes.
@@ -27,6 +27,12 @@ struct ModelFile {
     point: Vec<PointFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     beam: Vec<Beam>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    cylinder: Vec<Cylinder>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    valve: Vec<Valve>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    block: Vec<Block>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     spring: Vec<Spring>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -187,6 +193,15 @@ impl Model {
         for beam in file.beam {
             model.add_beam(beam)?;
         }
+        for cylinder in file.cylinder {
+            model.add_cylinder(cylinder)?;
+        }
+        for valve in file.valve {
+            model.add_valve(valve)?;
+        }
+        for block in file.block {
+            model.add_block(block)?;
+        }
         model.check()?;
         Ok(model)
     }
@@ -194,7 +209,9 @@ impl Model {
     /// Whether the inertia of a coordinate is written with a body or a beam.
     fn is_written_elsewhere(&self, coordinate: &str) -> bool {
         let of_body = |body: &crate::Body| body.name == coordinate || body.roll() == coordinate;
-        self.bodies.iter().any(of_body) || self.is_beam_coordinate(coordinate)
+        self.bodies.iter().any(of_body)
+            || self.is_beam_coordinate(coordinate)
+            || self.is_internal(coordinate)
     }
 
     /// Writes the model as the text of a model file; [`Model::from_toml`] reads it back unchanged.
@@ -213,6 +230,9 @@ impl Model {
             body: BodyFile::all_of(self),
             point: PointFile::all_of(self),
             beam: self.stated_beams(),
+            cylinder: self.cylinders.clone(),
+            valve: self.valves.clone(),
+            block: self.blocks.clone(),
             spring: {
                 let own = self.springs.iter();
                 own.filter(|spring| !self.is_of_beam(spring))

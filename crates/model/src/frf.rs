@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use faer::{Mat, c64};
 
-use crate::{Model, ModelError, Output, OutputKind, StructuralMatrices};
+use crate::{Model, ModelError, Output, OutputKind, PRESSURE_UNIT_PA, StructuralMatrices};
 
 /// Which motion a frequency response relates to force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,6 +110,25 @@ impl Model {
                         * (motion(Some(a), force) - motion(Some(b), force))
                 }
                 (OutputKind::Force, None) => zero,
+                (OutputKind::Pressure, _) => of_node(FrfKind::Mobility) * PRESSURE_UNIT_PA,
+                (OutputKind::Spool, _) => {
+                    let valve = self
+                        .valves
+                        .iter()
+                        .find(|v| Some(&v.name) == output.at.as_ref());
+                    motion(valve.map(crate::Valve::spool).as_ref(), force)
+                }
+                (OutputKind::Flow, _) => {
+                    let chamber = output.at.as_ref().and_then(|at| self.chamber(at));
+                    let of_valve = |valve: &crate::Valve| {
+                        let (cylinder, chamber) =
+                            chamber.filter(|(c, _)| c.name == valve.cylinder)?;
+                        let gain = valve.opening_gain(chamber, cylinder.pressures[chamber]);
+                        Some(motion(Some(&valve.spool()), force) * gain)
+                    };
+                    let flows = self.valves.iter().filter_map(of_valve);
+                    flows.fold(zero, |sum, flow| sum + flow)
+                }
                 (OutputKind::Roll, _) => {
                     let body = output.at.as_ref().and_then(|at| self.body_of(at));
                     motion(body.map(crate::Body::roll).as_ref(), force)

@@ -40,12 +40,14 @@
 #[cfg(feature = "ndarray")]
 mod arrays;
 mod beam;
+mod block;
 mod body;
 mod check;
 mod dense;
 mod error;
 mod file;
 mod frf;
+mod hydraulics;
 mod matrices;
 mod model;
 mod modes;
@@ -58,13 +60,17 @@ mod travel;
 mod uncertainty;
 
 pub use beam::{Beam, BeamValue};
+pub use block::Block;
 pub use body::{Body, Point};
 pub use error::ModelError;
 pub use file::SCHEMA;
 pub use frf::{FrfKind, frequency_response};
+pub use hydraulics::{Cylinder, PRESSURE_UNIT_PA, Valve};
 pub use matrices::StructuralMatrices;
 pub use model::{Model, same_pair};
-pub use modes::{DampedMode, UndampedModes, damped_modes, state_matrix, undamped_modes};
+pub use modes::{
+    DampedMode, UndampedModes, damped_modes, damped_modes_of, state_matrix, undamped_modes,
+};
 pub use node::{BodyPoint, Node};
 pub use parameter::Parameter;
 pub use parts::{

@@ -4,8 +4,8 @@ use faer::Mat;
 
 use crate::check::item;
 use crate::{
-    Beam, Body, Damper, EffectEntry, GROUND, Input, InputKind, Load, Mass, ModelError, Node,
-    Output, OutputKind, Pendulum, Spring, StructuralMatrices,
+    Beam, Block, Body, Cylinder, Damper, EffectEntry, GROUND, Input, InputKind, Load, Mass,
+    ModelError, Node, Output, OutputKind, Pendulum, Spring, StructuralMatrices, Valve,
 };
 
 /// A lumped model of any number of degrees of freedom, none included.
@@ -27,6 +27,12 @@ pub struct Model {
     pub bodies: Vec<Body>,
     /// Beams, whose coordinates are among the masses and whose static stiffness is among the springs.
     pub beams: Vec<Beam>,
+    /// Cylinders, whose pressures are rates of coordinates among the masses.
+    pub cylinders: Vec<Cylinder>,
+    /// Valves, whose spools are coordinates among the masses.
+    pub valves: Vec<Valve>,
+    /// Controllers, filters and sensors, whose states are rates of coordinates among the masses.
+    pub blocks: Vec<Block>,
     /// Linear springs.
     pub springs: Vec<Spring>,
     /// Linear dampers.
@@ -88,11 +94,57 @@ impl Model {
                 })?;
                 [body.roll(), ground()]
             }
+            (Some(at), _) if output.kind == OutputKind::Spool => {
+                let valve = self.valves.iter().find(|valve| &valve.name == at);
+                let valve = valve.ok_or_else(|| ModelError::Shape {
+                    place: place(),
+                    found: format!("the spool of \"{at}\""),
+                    needed: "the name of a [[valve]]".into(),
+                })?;
+                [valve.spool(), ground()]
+            }
+            (Some(at), _) if matches!(output.kind, OutputKind::Pressure | OutputKind::Flow) => {
+                self.chamber(at).ok_or_else(|| ModelError::Shape {
+                    place: place(),
+                    found: format!("a pressure or a flow of \"{at}\""),
+                    needed: "a chamber of a [[cylinder]], such as \"name.p1\"".into(),
+                })?;
+                [at.clone(), ground()]
+            }
             (Some(at), _) => [at.clone(), ground()],
             (None, Some(pair)) => pair.clone(),
             (None, None) => [ground(), ground()],
         };
         self.resolve_pair(&pair, place)
+    }
+
+    /// The place of a coordinate of a name.
+    pub(crate) fn dof(&self, name: &str) -> Option<usize> {
+        self.masses.iter().position(|mass| mass.name == name)
+    }
+
+    /// Of each coordinate whether only its rate counts: a pressure or a state of a block, an equation of first order.
+    #[must_use]
+    pub fn first_order(&self) -> Vec<bool> {
+        let names = self.masses.iter().map(|mass| mass.name.as_str());
+        names
+            .map(|name| self.chamber(name).is_some() || self.is_block_state(name))
+            .collect()
+    }
+
+    /// Whether a coordinate is no place on the machine: a mode of a beam, a pressure, a spool, a state of a block.
+    #[must_use]
+    pub fn is_internal(&self, coordinate: &str) -> bool {
+        self.is_beam_mode(coordinate)
+            || self.chamber(coordinate).is_some()
+            || self.is_block_state(coordinate)
+            || self.valves.iter().any(|valve| valve.spool() == coordinate)
+    }
+
+    /// Whether a coordinate is a pressure, a spool or a state of a block, whose sizes are not those of the motion.
+    #[must_use]
+    pub fn has_own_scale(&self, coordinate: &str) -> bool {
+        self.is_internal(coordinate) && !self.is_beam_mode(coordinate)
     }
 
     /// Number of degrees of freedom.
@@ -159,6 +211,13 @@ impl Model {
         for beam in &self.beams {
             self.add_beam_matrices(beam, &mut matrices)?;
         }
+        for cylinder in &self.cylinders {
+            self.add_cylinder_matrices(cylinder, &mut matrices)?;
+        }
+        for valve in &self.valves {
+            self.add_valve_matrices(valve, &mut matrices);
+        }
+        self.add_block_matrices(&mut matrices)?;
         Ok(matrices)
     }
 
@@ -207,6 +266,9 @@ impl Model {
             if let Some(node) = self.node(&load.at) {
                 node.push(load.value, &mut loads);
             }
+        }
+        for cylinder in &self.cylinders {
+            self.add_cylinder_loads(cylinder, &mut loads);
         }
         loads
     }

@@ -160,22 +160,57 @@ fn forward_substitute(lower: &Mat<f64>, rhs: &Mat<f64>) -> Mat<f64> {
 ///
 /// Reference: \[Ewins2000\], chapter 2.
 pub fn damped_modes(structure: &StructuralMatrices) -> Result<Vec<DampedMode>, ModelError> {
+    damped_modes_of(structure, &vec![false; structure.dof_count()])
+}
+
+/// As [`damped_modes`] where some coordinates are of first order ([`crate::Model::first_order`]): only their rates are
+/// states, and the zero poles of their integrals are none of the plant.
+///
+/// # Errors
+/// As [`damped_modes`]; [`ModelError::Shape`] for another number of coordinates.
+pub fn damped_modes_of(
+    structure: &StructuralMatrices,
+    first_order: &[bool],
+) -> Result<Vec<DampedMode>, ModelError> {
     let n = structure.dof_count();
+    if first_order.len() != n {
+        return Err(ModelError::Shape {
+            place: "modes".into(),
+            found: format!(
+                "{} coordinates told of first order or not",
+                first_order.len()
+            ),
+            needed: format!("{n}, one for each coordinate"),
+        });
+    }
     if n == 0 {
         return Ok(vec![]);
     }
-    let evd = balanced(&state_matrix(structure)?)
+    let state = state_matrix(structure)?;
+    let (unit, whole) = (velocity_unit(&state), balanced(&state));
+    let kept: Vec<usize> = (0..2 * n).filter(|&k| k >= n || !first_order[k]).collect();
+    let evd = Mat::from_fn(kept.len(), kept.len(), |i, j| whole[(kept[i], kept[j])])
         .eigen()
         .map_err(|_| ModelError::Eigen {
             matrix: "damped structure",
         })?;
     let values = evd.S();
     let vectors = evd.U();
-    let mut modes: Vec<DampedMode> = (0..2 * n)
+    // Of a coordinate of first order, its rate over λ.
+    let displacement = |i: usize, r: usize| -> c64 {
+        let of = |entry: usize| kept.iter().position(|&k| k == entry);
+        let zero = c64::new(0.0, 0.0);
+        match (of(i), of(n + i)) {
+            (Some(row), _) => vectors[(row, r)],
+            (None, Some(row)) if values[r] != zero => vectors[(row, r)] * unit / values[r],
+            _ => zero,
+        }
+    };
+    let mut modes: Vec<DampedMode> = (0..kept.len())
         .map(|r| (values[r], r))
         .filter(|(lambda, _)| lambda.im >= 0.0)
         .map(|(lambda, r)| {
-            let shape: Vec<c64> = (0..n).map(|i| vectors[(i, r)]).collect();
+            let shape: Vec<c64> = (0..n).map(|i| displacement(i, r)).collect();
             DampedMode::new(lambda, shape)
         })
         .collect();
@@ -220,12 +255,18 @@ impl DampedMode {
 /// the displacements, with blocks of one size, which keeps the digits of a stiff structure.
 pub(crate) fn balanced(state: &Mat<f64>) -> Mat<f64> {
     let n = state.nrows() / 2;
+    let omega = velocity_unit(state);
+    let unit = |i: usize| if i < n { 1.0 } else { omega };
+    Mat::from_fn(2 * n, 2 * n, |i, j| state[(i, j)] * unit(j) / unit(i))
+}
+
+/// ω of [`balanced`].
+fn velocity_unit(state: &Mat<f64>) -> f64 {
+    let n = state.nrows() / 2;
     let largest = (0..n * n)
         .map(|k| state[(n + k / n, k % n)].abs())
         .fold(0.0, f64::max);
-    let omega = if largest > 0.0 { largest.sqrt() } else { 1.0 };
-    let unit = |i: usize| if i < n { 1.0 } else { omega };
-    Mat::from_fn(2 * n, 2 * n, |i, j| state[(i, j)] * unit(j) / unit(i))
+    if largest > 0.0 { largest.sqrt() } else { 1.0 }
 }
 
 /// The state matrix A of [`damped_modes`], 2n × 2n.

@@ -62,6 +62,11 @@ pub enum InputKind {
     Force,
     /// The displacement of a moving base node, m.
     Displacement,
+    /// The command of a valve, share of the full opening.
+    Command,
+    /// A set point of a block, in the unit of its sum.
+    #[serde(rename = "set_point")]
+    SetPoint,
 }
 
 /// What drives the plant, as measured.
@@ -72,7 +77,7 @@ pub struct Input {
     pub channel: String,
     /// Force or base displacement.
     pub kind: InputKind,
-    /// A mass or a point of a body, or the name of the base node.
+    /// A mass or a point of a body, the name of the base node, of the valve or of the block.
     pub at: String,
     /// Model unit per unit of the channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -96,6 +101,12 @@ pub enum OutputKind {
     Force,
     /// The angle of a body, rad.
     Roll,
+    /// The pressure of a chamber, Pa.
+    Pressure,
+    /// The position of the spool of a valve, share of the full opening.
+    Spool,
+    /// The flow from the valves into a chamber, m³/s.
+    Flow,
 }
 
 /// What is compared.
@@ -106,7 +117,7 @@ pub struct Output {
     pub channel: String,
     /// The measured quantity.
     pub kind: OutputKind,
-    /// The node whose motion is measured, or the body.
+    /// The node whose motion is measured, the body, the chamber or the valve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<String>,
     /// For a force: the nodes between which the members carry it.

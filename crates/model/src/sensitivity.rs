@@ -205,7 +205,11 @@ impl Model {
             .into_iter()
             .map(|parameter| self.parameter_matrices(parameter, displacements))
             .collect::<Result<Vec<_>, _>>()?;
-        pole_sensitivities(&self.linearise(displacements)?, &derivatives)
+        let mut found = pole_sensitivities(&self.linearise(displacements)?, &derivatives)?;
+        // The integrals of pressures and of states of blocks are no states of the plant: each has a pole at zero.
+        let integrals = self.first_order().into_iter().filter(|is_first| *is_first);
+        found.drain(..integrals.count().min(found.len()));
+        Ok(found)
     }
 }
 

@@ -31,8 +31,10 @@ pub enum UnitKind {
     Force,
     /// Torque; SI unit N m.
     Torque,
-    /// Pressure; SI unit Pa. No quantity of a model: such a channel needs a gain.
+    /// Pressure; SI unit Pa.
     Pressure,
+    /// Volume flow; SI unit m^3/s.
+    Flow,
     /// Anything else (V, A, %, ...). No quantity of a model: such a channel needs a gain.
     Other,
 }
@@ -52,6 +54,7 @@ impl UnitKind {
             UnitKind::Force => "N",
             UnitKind::Torque => "N m",
             UnitKind::Pressure => "Pa",
+            UnitKind::Flow => "m^3/s",
             UnitKind::Other => "",
         }
     }
@@ -70,6 +73,7 @@ impl fmt::Display for UnitKind {
             UnitKind::Force => "a force",
             UnitKind::Torque => "a torque",
             UnitKind::Pressure => "a pressure",
+            UnitKind::Flow => "a flow",
             UnitKind::Other => "neither a motion nor a force",
         })
     }
@@ -87,6 +91,12 @@ pub enum Quantity {
     Acceleration,
     /// Force or torque.
     Force,
+    /// Pressure.
+    Pressure,
+    /// Volume flow.
+    Flow,
+    /// A number of any unit but that of a time: a command, a set point, a share.
+    Number,
 }
 
 impl Quantity {
@@ -98,6 +108,9 @@ impl Quantity {
             Quantity::Velocity => (UnitKind::Velocity, UnitKind::AngularVelocity),
             Quantity::Acceleration => (UnitKind::Acceleration, UnitKind::AngularAcceleration),
             Quantity::Force => (UnitKind::Force, UnitKind::Torque),
+            Quantity::Pressure => (UnitKind::Pressure, UnitKind::Pressure),
+            Quantity::Flow => (UnitKind::Flow, UnitKind::Flow),
+            Quantity::Number => return kind != UnitKind::Time,
         };
         kind == translation || kind == rotation
     }
@@ -110,6 +123,9 @@ impl Quantity {
             Quantity::Velocity => "m/s, mm/s, rad/s, deg/s or rpm",
             Quantity::Acceleration => "m/s^2, mm/s^2, g, rad/s^2 or deg/s^2",
             Quantity::Force => "N, kN, lbf or N m",
+            Quantity::Pressure => "Pa, bar, MPa or psi",
+            Quantity::Flow => "m^3/s, l/s or l/min",
+            Quantity::Number => "1, V or m",
         }
     }
 }
@@ -121,6 +137,9 @@ impl fmt::Display for Quantity {
             Quantity::Velocity => "a velocity",
             Quantity::Acceleration => "an acceleration",
             Quantity::Force => "a force",
+            Quantity::Pressure => "a pressure",
+            Quantity::Flow => "a flow",
+            Quantity::Number => "a number",
         })
     }
 }
@@ -337,6 +356,15 @@ fn load(symbol: &str) -> Option<(UnitKind, f64)> {
     };
     if let Some(factor) = force(symbol) {
         return Some((UnitKind::Force, factor));
+    }
+    let flow = match symbol {
+        "m^3/s" | "m3/s" => Some(1.0),
+        "l/s" | "L/s" => Some(1e-3),
+        "l/min" | "L/min" => Some(1e-3 / 60.0),
+        _ => None,
+    };
+    if let Some(factor) = flow {
+        return Some((UnitKind::Flow, factor));
     }
     let pressure = match symbol {
         "Pa" => Some(1.0),

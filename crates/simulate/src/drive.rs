@@ -26,7 +26,7 @@ pub(crate) struct DriveKey<'a> {
     run: *const Run,
     input_effects: &'a [(&'static str, Vec<f64>)],
     mapped_inputs: Vec<usize>,
-    input_nodes: Vec<Option<Node>>,
+    input_terms: Vec<Vec<(usize, f64)>>,
     loads: &'a [f64],
     couplings: Vec<Coupling>,
 }
@@ -47,9 +47,10 @@ impl Simulator {
             run,
             input_effects: &self.input_effects,
             mapped_inputs: self.input_maps.iter().map(|(input, _)| *input).collect(),
-            input_nodes: {
-                let inputs = self.model.inputs.iter();
-                inputs.map(|input| self.model.node(&input.at)).collect()
+            input_terms: {
+                let inputs = 0..self.model.inputs.len();
+                let terms = inputs.map(|i| self.model.input_terms(i));
+                terms.collect::<Result<_, _>>()?
             },
             loads: &self.loads,
             couplings: self.couplings()?,
@@ -86,10 +87,7 @@ impl Simulator {
             .collect();
         drive.base_count = base_inputs.len();
         for (i, signal) in inputs.iter().enumerate() {
-            let Some(node) = self.model.node(&self.model.inputs[i].at) else {
-                continue;
-            };
-            for (dof, weight) in node.terms() {
+            for (dof, weight) in self.model.input_terms(i)? {
                 for (sample, value) in signal.iter().enumerate() {
                     drive.dof_force[sample * n + dof] += weight * value;
                 }

@@ -56,6 +56,7 @@
 mod batch;
 mod drive;
 mod error;
+mod orifice;
 mod outputs;
 mod prepare;
 mod run;

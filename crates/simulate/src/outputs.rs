@@ -2,7 +2,7 @@
 
 use simgap_integrate::exact::lanes::{LANES, LaneSnapshot, Pack};
 use simgap_integrate::exact::{Element, Snapshot};
-use simgap_model::{Model, ModelError, Node, OutputKind};
+use simgap_model::{Cylinder, Model, ModelError, Node, OutputKind, PRESSURE_UNIT_PA};
 
 use crate::prepare::Prepared;
 
@@ -13,6 +13,8 @@ pub(crate) struct OutputPlan {
     b: Node,
     pub(crate) stiffness: f64,
     pub(crate) damping: f64,
+    /// Added to what is read off members: a pressure about which others are computed.
+    offset: f64,
     /// Elements between a and b, with the sign of their orientation.
     elements: Vec<(usize, f64)>,
 }
@@ -50,6 +52,7 @@ impl OutputPlan {
     pub(crate) fn is_alike(&self, other: &OutputPlan) -> bool {
         (self.kind, self.a, self.b) == (other.kind, other.a, other.b)
             && self.elements == other.elements
+            && self.offset == other.offset
     }
 
     /// As [`OutputPlan::read`] for eight sets, whose members have these stiffnesses and dampings.
@@ -63,19 +66,20 @@ impl OutputPlan {
         let displacement = || self.across_lanes(at.displacement, |i| at.base_displacement[i]);
         let velocity = || self.across_lanes(at.velocity, |i| at.base_velocity[i]);
         match self.kind {
-            OutputKind::Displacement | OutputKind::Roll => displacement(),
+            OutputKind::Displacement | OutputKind::Roll | OutputKind::Spool => displacement(),
             OutputKind::Velocity => velocity(),
             OutputKind::Acceleration => {
                 self.across_lanes(at.acceleration, |i| base.acceleration(i))
             }
-            OutputKind::Force => {
+            OutputKind::Force | OutputKind::Pressure | OutputKind::Flow => {
                 let (x, v) = (displacement(), velocity());
                 let mut on_top = Pack([-0.0; LANES]);
                 for &(i, sign) in &self.elements {
                     let force = &at.element_force[i];
                     on_top = Pack::of(|l| on_top.0[l] + sign * force.0[l]);
                 }
-                Pack::of(|l| stiffness.0[l] * x.0[l] + damping.0[l] * v.0[l] + on_top.0[l])
+                let offset = self.offset;
+                Pack::of(|l| stiffness.0[l] * x.0[l] + damping.0[l] * v.0[l] + on_top.0[l] + offset)
             }
         }
     }
@@ -108,12 +112,12 @@ impl OutputPlan {
     ) -> f64 {
         let across = |dofs: &[f64], bases: &[f64]| across([self.a, self.b], dofs, bases);
         match self.kind {
-            OutputKind::Displacement | OutputKind::Roll => {
+            OutputKind::Displacement | OutputKind::Roll | OutputKind::Spool => {
                 across(at.displacement, base.displacement)
             }
             OutputKind::Velocity => across(at.velocity, base.velocity),
             OutputKind::Acceleration => across(acceleration, base.acceleration),
-            OutputKind::Force => {
+            OutputKind::Force | OutputKind::Pressure | OutputKind::Flow => {
                 let members = self.stiffness * across(at.displacement, base.displacement)
                     + self.damping * across(at.velocity, base.velocity);
                 let on_top: f64 = self
@@ -121,7 +125,7 @@ impl OutputPlan {
                     .iter()
                     .map(|&(i, sign)| sign * at.element_force[i])
                     .sum();
-                members + on_top
+                members + on_top + self.offset
             }
         }
     }
@@ -145,22 +149,63 @@ pub(crate) fn output_plans(
         let joined = elements.iter().enumerate().filter_map(|(i, element)| {
             if !carried[i] {
                 None
-            } else if (element.a, element.b) == (a, b) {
+            } else if element.port.force == [a, b] {
                 Some((i, 1.0))
-            } else if (element.a, element.b) == (b, a) {
+            } else if element.port.force == [b, a] {
                 Some((i, -1.0))
             } else {
                 None
             }
         });
-        plans.push(OutputPlan {
+        let plan = OutputPlan {
             kind: output.kind,
             a,
             b,
             stiffness,
             damping,
+            offset: 0.0,
             elements: joined.collect(),
+        };
+        let chamber = output.at.as_ref().and_then(|at| model.chamber(at));
+        plans.push(match (output.kind, chamber) {
+            (OutputKind::Pressure, Some((cylinder, chamber))) => OutputPlan {
+                damping: PRESSURE_UNIT_PA,
+                offset: cylinder.pressures[chamber],
+                ..plan
+            },
+            (OutputKind::Flow, Some((cylinder, chamber))) => {
+                flow_plan(model, elements, plan, cylinder, chamber)
+            }
+            _ => plan,
         });
     }
     Ok(plans)
+}
+
+/// The flow of the valve of a cylinder into a chamber: what is proportional to its spool, and what its orifice adds.
+fn flow_plan(
+    model: &Model,
+    elements: &[Element],
+    plan: OutputPlan,
+    cylinder: &Cylinder,
+    chamber: usize,
+) -> OutputPlan {
+    let valve = model.valves.iter().find(|v| v.cylinder == cylinder.name);
+    let spool = valve.and_then(|valve| Some((valve, model.node(&valve.spool())?)));
+    let Some((valve, spool)) = spool else {
+        return OutputPlan { b: plan.a, ..plan };
+    };
+    let is_own = |element: &Element| {
+        element.port.displacement[0] == spool && element.port.force[0] == plan.a
+    };
+    let own = elements.iter().position(is_own);
+    OutputPlan {
+        a: spool,
+        stiffness: valve.opening_gain(chamber, cylinder.pressures[chamber]),
+        elements: own
+            .map(|i| (i, -1.0 / PRESSURE_UNIT_PA))
+            .into_iter()
+            .collect(),
+        ..plan
+    }
 }

@@ -185,6 +185,7 @@ pub fn input_quantity(kind: InputKind) -> Quantity {
     match kind {
         InputKind::Force => Quantity::Force,
         InputKind::Displacement => Quantity::Displacement,
+        InputKind::Command | InputKind::SetPoint => Quantity::Number,
     }
 }
 
@@ -196,6 +197,9 @@ pub fn output_quantity(kind: OutputKind) -> Quantity {
         OutputKind::Velocity => Quantity::Velocity,
         OutputKind::Acceleration => Quantity::Acceleration,
         OutputKind::Force => Quantity::Force,
+        OutputKind::Pressure => Quantity::Pressure,
+        OutputKind::Spool => Quantity::Number,
+        OutputKind::Flow => Quantity::Flow,
     }
 }
 
@@ -211,6 +215,9 @@ pub fn output_unit(output: &Output, record: &Record) -> &'static str {
             OutputKind::Acceleration => "m/s^2",
             OutputKind::Force => "N",
             OutputKind::Roll => "rad",
+            OutputKind::Pressure => "Pa",
+            OutputKind::Spool => "1",
+            OutputKind::Flow => "m^3/s",
         },
     }
 }

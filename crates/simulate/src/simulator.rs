@@ -7,6 +7,7 @@ use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, Snapshot};
 use simgap_model::{Location, Model, Node, same_pair};
 
 use crate::batch::excitation;
+use crate::orifice::orifices;
 use crate::outputs::{BaseMotion, OutputPlan, across, output_plans};
 use crate::prepare::{Prepared, Workshop};
 use crate::{Run, SimulateError};
@@ -124,18 +125,15 @@ impl Simulator {
         let mut carried = Vec::new();
         for pendulum in &model.pendulums {
             let [a, b] = ends(&model, &Location::Mass(pendulum.at.clone()))?;
-            elements.push(Element {
-                a,
-                b,
-                law: Box::new(Gravity {
-                    value: pendulum.value,
-                }),
-            });
+            let value = pendulum.value;
+            elements.push(Element::between(a, b, Box::new(Gravity { value })));
             carried.push(false);
         }
+        elements.extend(orifices(&model));
+        carried.resize(elements.len(), false);
         for (at, law) in laws {
             let [a, b] = ends(&model, &at)?;
-            elements.push(Element { a, b, law });
+            elements.push(Element::between(a, b, law));
             carried.push(matches!(*at, Location::Between(_)));
         }
         Ok(Simulator {

@@ -122,9 +122,21 @@ fn verify_every_kind_of_the_catalogue_in_a_batch() {
         value: 1.7,
         uncertainty,
     });
+    let mut driven = plain.clone();
+    let axis = Model::from_toml(include_str!("fixtures/servo_axis.toml")).unwrap();
+    let mut cylinder = axis.cylinders[0].clone();
+    cylinder.between = ["top".into(), "ground".into()];
+    driven.add_cylinder(cylinder).unwrap();
+    let mut valve = axis.valves[0].clone();
+    valve.from = None;
+    driven.add_valve(valve).unwrap();
     for &effect in catalogue().iter().chain(&free_laws()) {
         let has_site = !sites(&plain, effect.site()).is_empty();
-        let model = if has_site { &plain } else { &loaded }.clone();
+        let model = match has_site {
+            true => plain.clone(),
+            false if effect.site().is_hydraulic() => driven.clone(),
+            false => loaded.clone(),
+        };
         let simulators: Vec<Simulator> = [1.0, 0.97, 1.1, 0.5]
             .iter()
             .flat_map(|&factor| instances(effect, &model, factor))

@@ -84,6 +84,9 @@ pub(crate) fn output_unit(model: &Model, kind: OutputKind) -> &'static str {
         (OutputKind::Velocity, true) => "rad/s",
         (OutputKind::Acceleration, true) => "rad/s^2",
         (OutputKind::Force, true) => "N m",
+        (OutputKind::Pressure, _) => "Pa",
+        (OutputKind::Flow, _) => "m^3/s",
+        (OutputKind::Spool, _) => "1",
     }
 }
 
@@ -92,6 +95,7 @@ pub(crate) fn input_unit(model: &Model, kind: InputKind) -> &'static str {
     match kind {
         InputKind::Force => output_unit(model, OutputKind::Force),
         InputKind::Displacement => output_unit(model, OutputKind::Displacement),
+        InputKind::Command | InputKind::SetPoint => "1",
     }
 }
 

@@ -55,6 +55,9 @@ pub(super) fn words(quantity: Quantity) -> &'static str {
         Quantity::Velocity => "velocity",
         Quantity::Acceleration => "acceleration",
         Quantity::Force => "force",
+        Quantity::Pressure => "pressure",
+        Quantity::Flow => "flow",
+        Quantity::Number => "number",
     }
 }
 

@@ -199,6 +199,9 @@ fn gain(text: &mut String, role: &Role) {
         Quantity::Velocity => "m/s",
         Quantity::Acceleration => "m/s^2",
         Quantity::Force => "N",
+        Quantity::Pressure => "Pa",
+        Quantity::Flow => "m^3/s",
+        Quantity::Number => "1",
     };
     if role.needs_gain {
         let line = format!("{:COMMENT$}", "gain = 1.0");

@@ -3,7 +3,7 @@
 
 use simgap_effects::{Action, Effect, Sampled, SignalMap, SiteScale, find};
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
-use simgap_model::Model;
+use simgap_model::{Location, Model};
 
 /// `carriage` has a spring but no damper to the ground, `load` a damper but no spring, and both
 /// lie between the two: so each kind of site is there once at least.
@@ -61,6 +61,41 @@ at = "load"
 /// The model of [`MODEL`].
 pub(crate) fn model() -> Model {
     Model::from_toml(MODEL).unwrap()
+}
+
+/// A cylinder and a valve beside it.
+const DRIVE: &str = r#"
+[[cylinder]]
+name = "drive"
+between = ["carriage", "ground"]
+areas = [1e-3, 8e-4]
+dead_volumes = [1e-4, 1e-4]
+stroke = 0.1
+bulk_modulus = 1.4e9
+pressures = [4e6, 5e6]
+
+[[valve]]
+name = "servo"
+cylinder = "drive"
+rated_flow = 1e-3
+rated_drop = 3.5e6
+natural_freq = 80.0
+damping_ratio = 0.7
+supply = 1e7
+"#;
+
+/// The model of [`MODEL`], with a hydraulic drive where the place is on one.
+pub(crate) fn model_at(at: &Location) -> Model {
+    let plain = model();
+    if plain.check_location(at, "").is_ok() {
+        return plain;
+    }
+    hydraulic()
+}
+
+/// The model of [`MODEL`] with a hydraulic drive.
+pub(crate) fn hydraulic() -> Model {
+    Model::from_toml(&format!("{MODEL}{DRIVE}")).unwrap()
 }
 
 /// Typical sizes, each different from the others so that no two can be mistaken.

@@ -2,6 +2,8 @@
 
 use std::any::Any;
 
+use simgap_model::Node;
+
 use super::lanes::LaneLaw;
 
 /// Motion across a member, and when.
@@ -136,12 +138,42 @@ impl dyn ForceLaw {
     }
 }
 
-/// A law between two nodes of a model.
+/// A law on the plant: a port that reads two numbers off the state and pushes it with one.
 pub struct Element {
-    /// Node a.
-    pub a: simgap_model::Node,
-    /// Node b.
-    pub b: simgap_model::Node,
+    /// What it reads and what it pushes.
+    pub port: Port,
     /// The force it carries.
     pub law: Box<dyn ForceLaw>,
+}
+
+/// Where a law is joined to the plant, each a difference of two nodes a and b,
+///
+/// ```text
+/// d = r_dᵀ x,    v = r_vᵀ ẋ,    the plant is pushed with − r_f F(d, v)                               (1)
+/// ```
+///
+/// The three rows are one for a member between two nodes. An orifice reads the position of a spool and the pressure of
+/// a chamber, which is the rate of a coordinate, and pushes that coordinate with its flow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Port {
+    /// r_d.
+    pub displacement: [Node; 2],
+    /// r_v.
+    pub velocity: [Node; 2],
+    /// r_f: a is pushed with −F and b with +F.
+    pub force: [Node; 2],
+}
+
+impl Element {
+    /// A law carried between two nodes.
+    #[must_use]
+    pub fn between(a: Node, b: Node, law: Box<dyn ForceLaw>) -> Element {
+        let row = [a, b];
+        let port = Port {
+            displacement: row,
+            velocity: row,
+            force: row,
+        };
+        Element { port, law }
+    }
 }

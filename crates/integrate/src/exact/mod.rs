@@ -11,6 +11,6 @@ mod propagator;
 
 pub use expm::matrix_exponential;
 pub use lanes::{LaneLaw, gather};
-pub use law::{Element, Followed, ForceLaw, MemberMotion};
+pub use law::{Element, Followed, ForceLaw, MemberMotion, Port};
 pub use march::{Excitation, Snapshot};
 pub use propagator::ExactPropagator;

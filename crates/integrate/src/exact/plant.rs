@@ -65,15 +65,16 @@ pub(super) struct Plant<'a> {
     free_velocity: Vec<f64>,
 }
 
-/// What stands at the end of an element less what stands at the other.
-fn across(element: &Element, values: &[f64], bases: &[f64]) -> f64 {
-    element.a.of(values, bases) - element.b.of(values, bases)
+/// What stands at one node less what stands at the other.
+fn across([a, b]: [Node; 2], values: &[f64], bases: &[f64]) -> f64 {
+    a.of(values, bases) - b.of(values, bases)
 }
 
 /// Adds what a force carried by an element does to the degrees of freedom.
 pub(super) fn spread(element: &Element, force: f64, dof_force: &mut [f64]) {
-    element.a.push(-force, dof_force);
-    element.b.push(force, dof_force);
+    let [a, b] = element.port.force;
+    a.push(-force, dof_force);
+    b.push(force, dof_force);
 }
 
 impl<'a> Plant<'a> {
@@ -104,7 +105,13 @@ impl<'a> Plant<'a> {
                         Node::Dof(_) | Node::Point(_) => node.of(&moved, &[]),
                     };
                     // Pushed by −E: a positive force moves its own element back.
-                    folded[i * m + j] = -(at(elements[i].a) - at(elements[i].b));
+                    let port = &elements[i].port;
+                    let [a, b] = if offset == 0 {
+                        port.displacement
+                    } else {
+                        port.velocity
+                    };
+                    folded[i * m + j] = -(at(a) - at(b));
                 }
             }
             folded
@@ -141,8 +148,8 @@ impl<'a> Plant<'a> {
         let (x, v) = state.split_at(self.propagator.dof_count);
         let (base_x, base_v) = base.split_at(base.len() / 2);
         MemberMotion {
-            displacement: across(element, x, base_x),
-            velocity: across(element, v, base_v),
+            displacement: across(element.port.displacement, x, base_x),
+            velocity: across(element.port.velocity, v, base_v),
             time_s,
             step_s: self.propagator.time_step_s,
         }
@@ -175,7 +182,7 @@ impl<'a> Plant<'a> {
             };
             let level = element.law.dry_level(motion.velocity.abs()).unwrap_or(0.0);
             // At rest the dry force balances what it can of the excitation across it.
-            let at_rest = across(element, force, &no_force).clamp(-level, level);
+            let at_rest = across(element.port.force, force, &no_force).clamp(-level, level);
             self.end_velocity[i] = motion.velocity;
             self.dry_end[i] = if motion.velocity == 0.0 {
                 at_rest
@@ -192,8 +199,8 @@ impl<'a> Plant<'a> {
         let (base_x, base_v) = base.split_at(base.len() / 2);
         let m = self.elements.len();
         for (i, element) in self.elements.iter().enumerate() {
-            self.free_displacement[i] = across(element, free_x, base_x);
-            self.free_velocity[i] = across(element, free_v, base_v);
+            self.free_displacement[i] = across(element.port.displacement, free_x, base_x);
+            self.free_velocity[i] = across(element.port.velocity, free_v, base_v);
         }
         self.start_velocity.copy_from_slice(&self.end_velocity);
         // What sticks ends a step at rest but for rounding.

@@ -19,7 +19,8 @@ use faer::Mat;
 use simgap_diagnose::{CheckSeries, Diagnosis, PlaceMotion};
 use simgap_integrate::exact::matrix_exponential;
 use simgap_model::{
-    Location, Model, Node, Output, OutputKind, StructuralMatrices, same_pair, state_matrix,
+    Location, Model, Node, Output, OutputKind, PRESSURE_UNIT_PA, StructuralMatrices, same_pair,
+    state_matrix,
 };
 
 use simgap_signal::noise::noise_std_by_differences;
@@ -302,14 +303,15 @@ fn row(model: &Model, output: &Output, at: &Location, rate: &Mat<f64>) -> Option
     }
     for (i, weight) in node.terms() {
         match output.kind {
-            OutputKind::Displacement | OutputKind::Roll => row[i] += weight,
+            OutputKind::Displacement | OutputKind::Roll | OutputKind::Spool => row[i] += weight,
+            OutputKind::Pressure => row[n + i] += weight * PRESSURE_UNIT_PA,
             OutputKind::Velocity => row[n + i] += weight,
             OutputKind::Acceleration => {
                 for (j, value) in row.iter_mut().enumerate() {
                     *value += weight * rate[(n + i, j)];
                 }
             }
-            OutputKind::Force => {}
+            OutputKind::Force | OutputKind::Flow => return None,
         }
     }
     Some(row)

@@ -33,7 +33,7 @@ impl<'a> LaneSet<'a> {
     #[must_use]
     pub fn is_alike(&self, other: &LaneSet<'_>) -> bool {
         let alike = |a: &Element, b: &Element| {
-            (a.a, a.b) == (b.a, b.b)
+            a.port == b.port
                 && a.law.dry_level(0.0).is_some() == b.law.dry_level(0.0).is_some()
                 && a.law.remembers() == b.law.remembers()
         };
@@ -194,7 +194,7 @@ impl<'a> Lanes<'a> {
         (state, base): (&State<R>, &[Pack]),
         carried: &mut Pack,
     ) {
-        let [displacement, velocity] = motion_across(simd, self.block.nodes[i], state, base);
+        let [displacement, velocity] = motion_across(simd, self.block.ports[i], state, base);
         let spread = self.sets.iter().enumerate();
         for (l, set) in spread.filter(|(_, set)| set.elements[i].law.is_spread_over_steps()) {
             let step_s = set.propagator.time_step_s;

@@ -9,14 +9,14 @@ use super::law::{ElementLanes, LaneLaw, OneByOne};
 use super::row::{Row, State, change, entry};
 use super::wide::{Which, Wide};
 use super::{LANES, Mask, Pack};
-use crate::exact::law::ForceLaw;
+use crate::exact::law::{ForceLaw, Port};
 use crate::exact::plant::{Plant, SWEEPS};
 
 /// Eight sets of one structure, in the lanes of every number.
 pub(super) struct Block<'a> {
     arch: Arch,
     pub(super) kernel: LaneKernel,
-    pub(super) nodes: Vec<[Node; 2]>,
+    pub(super) ports: Vec<Port>,
     laws: Vec<Box<dyn LaneLaw + 'a>>,
     pub(super) elements: Vec<ElementLanes>,
     /// How the forces of element j move element i, row-major, as in the march of one set.
@@ -56,14 +56,14 @@ fn across<S: Simd>(simd: S, [a, b]: [Node; 2], values: &[Pack], bases: &[Pack]) 
 #[inline(always)]
 pub(super) fn motion_across<S: Simd, R: Row>(
     simd: S,
-    nodes: [Node; 2],
+    port: Port,
     state: &State<R>,
     base: &[Pack],
 ) -> [Pack; 2] {
     let (base_x, base_v) = base.split_at(base.len() / 2);
     [
-        across(simd, nodes, state.displacement.packs(), base_x),
-        across(simd, nodes, state.velocity.packs(), base_v),
+        across(simd, port.displacement, state.displacement.packs(), base_x),
+        across(simd, port.velocity, state.velocity.packs(), base_v),
     ]
 }
 
@@ -146,7 +146,7 @@ impl<'a> Block<'a> {
         Block {
             arch,
             kernel: LaneKernel::new(&sets.map(|set| set.propagator)),
-            nodes: sets[0].elements.iter().map(|e| [e.a, e.b]).collect(),
+            ports: sets[0].elements.iter().map(|e| e.port).collect(),
             laws: (0..m).map(law).collect(),
             elements: (0..m).map(element).collect(),
             compliance,
@@ -181,8 +181,8 @@ impl<'a> Block<'a> {
         base: &[Pack],
         steps: usize,
     ) {
-        for (element, &nodes) in self.elements.iter().zip(&self.nodes) {
-            spread(simd, nodes, &element.smooth, before.packs_mut());
+        for (element, &port) in self.elements.iter().zip(&self.ports) {
+            spread(simd, port.force, &element.smooth, before.packs_mut());
         }
         let forces = [before.packs(), after.packs()];
         self.kernel.step(simd, state, forces, next);
@@ -199,8 +199,8 @@ impl<'a> Block<'a> {
         let passed = Wide::splat(simd, steps) * Wide::of(simd, &self.step_s);
         let time_s = (Wide::of(simd, &self.start_s) + passed).pack();
         let parts = self.elements.iter_mut().zip(&mut self.free);
-        for ((element, free), &nodes) in parts.zip(&self.nodes) {
-            *free = motion_across(simd, nodes, next, base);
+        for ((element, free), &port) in parts.zip(&self.ports) {
+            *free = motion_across(simd, port, next, base);
             element.time_s = time_s;
             element.free_velocity = free[1];
             element.start_velocity = element.end_velocity;
@@ -276,14 +276,14 @@ impl<'a> Block<'a> {
     #[inline(always)]
     fn push<S: Simd, R: Row>(&mut self, simd: S, net: &mut R, next: &mut State<R>) {
         net.packs_mut().fill(Pack::ZERO);
-        for (element, &nodes) in self.elements.iter().zip(&self.nodes) {
-            spread(simd, nodes, &element.smooth, net.packs_mut());
+        for (element, &port) in self.elements.iter().zip(&self.ports) {
+            spread(simd, port.force, &element.smooth, net.packs_mut());
         }
         self.kernel.push_end(simd, net, next);
         if self.any_dry {
             net.packs_mut().fill(Pack::ZERO);
-            for (element, &nodes) in self.elements.iter().zip(&self.nodes) {
-                spread(simd, nodes, &element.dry_force, net.packs_mut());
+            for (element, &port) in self.elements.iter().zip(&self.ports) {
+                spread(simd, port.force, &element.dry_force, net.packs_mut());
             }
             self.kernel.push_held(simd, net, next);
         }
@@ -301,8 +301,8 @@ impl<'a> Block<'a> {
     /// Adds what these forces do to those on the degrees of freedom.
     #[inline(always)]
     pub(super) fn add_to<S: Simd, R: Row>(&self, simd: S, carried: &[Pack], net: &mut R) {
-        for (carried, &nodes) in carried.iter().zip(&self.nodes) {
-            spread(simd, nodes, carried, net.packs_mut());
+        for (carried, &port) in carried.iter().zip(&self.ports) {
+            spread(simd, port.force, carried, net.packs_mut());
         }
     }
 }
