@@ -39,6 +39,14 @@ static CATALOGUE: &[&dyn Effect] = &[
     &input_saturation::InputSaturation,
     &input_rate_limit::InputRateLimit,
     &held_input::HeldInput,
+    // Hydraulics.
+    &internal_leakage::InternalLeakage,
+    &external_leakage::ExternalLeakage,
+    &bulk_modulus::BulkModulus,
+    &valve_dead_band::ValveDeadBand,
+    &valve_asymmetry::ValveAsymmetry,
+    &spool_lag::SpoolLag,
+    &supply_sag::SupplySag,
     // Measurement chain.
     &sensor_bias::SensorBias,
     &sensor_gain::SensorGain,

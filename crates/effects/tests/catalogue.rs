@@ -6,7 +6,7 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use common::{force, model, scale};
+use common::{force, hydraulic, model, model_at, scale};
 use simgap_effects::{
     Action, Effect, Family, Parameter, Placed, Sampled, SiteScale, catalogue, sites,
 };
@@ -17,11 +17,11 @@ use simgap_model::{Location, Model};
 fn trace(action: &Action, at: &Location, time_step_s: f64) -> Vec<f64> {
     match action {
         Action::Model(change) | Action::Mode { change, .. } => {
-            let mut model = model();
+            let mut model = model_at(at);
             change(&mut model, at);
             matrix_entries(&model)
         }
-        Action::Member(build) => trace(&Action::Force(build(&model(), at)), at, time_step_s),
+        Action::Member(build) => trace(&Action::Force(build(&model_at(at), at)), at, time_step_s),
         Action::Force(law) => {
             let mut trace = Vec::new();
             for displacement in [-0.004, -0.001, 0.0, 0.0045] {
@@ -57,9 +57,9 @@ fn moved(law: &dyn ForceLaw, displacement: f64) -> f64 {
 }
 
 /// The same without the effect.
-fn untouched(action: &Action) -> Vec<f64> {
+fn untouched(action: &Action, at: &Location) -> Vec<f64> {
     match action {
-        Action::Model(_) | Action::Mode { .. } => matrix_entries(&model()),
+        Action::Model(_) | Action::Mode { .. } => matrix_entries(&model_at(at)),
         Action::Force(_) | Action::Member(_) => vec![0.0; 40],
         Action::Input(_) | Action::Output(_) | Action::Sampling(_) => signal(),
     }
@@ -75,6 +75,12 @@ fn matrix_entries(model: &Model) -> Vec<f64> {
         &matrices.stiffness_matrix,
     ] {
         entries.extend((0..n).flat_map(|i| (0..n).map(move |j| matrix[(i, j)])));
+    }
+    // What of a valve is no entry of a matrix.
+    for valve in &model.valves {
+        for spool in [-0.5, -0.01, 0.004, 0.3] {
+            entries.extend([0, 1].map(|chamber| valve.flow(chamber, spool, 4e6)));
+        }
     }
     entries
 }
@@ -93,7 +99,12 @@ fn measured() -> Vec<f64> {
 }
 
 fn first_site(effect: &dyn Effect) -> Location {
-    sites(&model(), effect.site())
+    let model = if effect.site().is_hydraulic() {
+        hydraulic()
+    } else {
+        model()
+    };
+    sites(&model, effect.site())
         .into_iter()
         .next()
         .unwrap_or_else(|| panic!("{}: no site of {:?}", effect.kind(), effect.site()))
@@ -181,6 +192,13 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "synchronous_force",
         "synchronous_tone",
         "gain_ripple",
+        "internal_leakage",
+        "external_leakage",
+        "bulk_modulus",
+        "valve_dead_band",
+        "valve_asymmetry",
+        "spool_lag",
+        "supply_sag",
     ];
     for kind in promised {
         assert!(simgap_effects::find(kind).is_some(), "{kind} is gone");
@@ -241,7 +259,7 @@ fn verify_neutral_values_change_nothing() {
         let at = first_site(*effect);
         assert_eq!(
             trace(&action, &at, scale().time_step_s),
-            untouched(&action),
+            untouched(&action, &at),
             "{} at its neutral value",
             effect.kind()
         );
@@ -279,7 +297,7 @@ fn verify_starts_are_inside_the_range_and_visible() {
                 let action = effect.action(&start);
                 assert_ne!(
                     trace(&action, &first_site(*effect), scale.time_step_s),
-                    untouched(&action),
+                    untouched(&action, &first_site(*effect)),
                     "{kind} at {start:?} does nothing"
                 );
             }
@@ -400,7 +418,7 @@ fn verify_what_dynamics_turn_into_lets_them_grow_at_the_same_place() {
 
 #[test]
 fn verify_every_kind_has_sites_and_survives_a_model_file() {
-    let model = model();
+    let model = hydraulic();
     for &effect in catalogue() {
         let places = sites(&model, effect.site());
         assert!(!places.is_empty(), "{} has no site", effect.kind());

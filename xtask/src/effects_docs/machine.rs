@@ -51,6 +51,11 @@ impl Stage {
         let at = "at = \"table\"";
         let loaded = format!("{both}[[load]]\n{at}\nvalue = {LOAD}\n\n");
         let arm = format!("{both}[[pendulum]]\n{at}\nvalue = {PENDULUM}\n\n");
+        if effect.site().is_hydraulic() {
+            let model = super::drive::model()?;
+            let at = sites(&model, effect.site()).into_iter().next();
+            return Ok(at.map(|at| Stage { effect, model, at }));
+        }
         for members in [both, damper, spring, loaded, arm] {
             let model = machine(&members)?;
             if let Some(at) = sites(&model, effect.site()).into_iter().next() {

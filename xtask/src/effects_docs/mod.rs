@@ -1,6 +1,7 @@
 //! `cargo xtask effects-docs [--check]`: the page on the catalogue, `docs/effects.md`, and a picture
 //! of each signature in `docs/effects/`, made from the catalogue itself.
 
+mod drive;
 mod machine;
 mod picture;
 mod signature;
@@ -102,7 +103,8 @@ fn page(pictures: &BTreeMap<&str, Picture>) -> String {
          The pictures are simulated from the catalogue: a table of 10 kg on a spring of 4000 N/m \
          and a damper of 40 N s/m (one of the two where the effect sits in the place of the \
          other), with the values below each picture. Forces are those of the members at the place, \
-         the effect included. They show what to look for in a report; they are no threshold.\n\n",
+         the effect included. Hydraulic effects are drawn on a table of 100 kg that a cylinder with a \
+         servo valve moves under position control. They show what to look for in a report; they are no threshold.\n\n",
     );
     contents(&mut text);
     for (family, title) in FAMILIES {

@@ -4,17 +4,19 @@
 //! |---|---|---|
 //! | a force law | force of the members along a prescribed motion | displacement, velocity, or time where it has a clock |
 //! | a change of the model, a mode | receptance of the table | frequency |
+//! | a change of a hydraulic drive | displacement of the table that follows a set point | time |
 //! | a change of a load | force along the travel | displacement |
 //! | a map of an input | what is commanded, what reaches the table | time |
 //! | a map of an output | true displacement, what is stored | time |
 
 use std::f64::consts::TAU;
 
-use simgap_effects::{Action, Effect, Sampled, SignalMap};
+use simgap_effects::{Action, Effect, Placed, Sampled, SignalMap};
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_model::{FrfKind, Model, ModelError, frequency_response};
 use simgap_simulate::SimulateError;
 
+use super::drive::follows;
 use super::machine::{AMPLITUDE_M, COARSENING, Stage, displacement, pulses, times};
 
 /// A curve, point by point.
@@ -65,6 +67,9 @@ const OUTPUT: (&str, &str) = ("output", "mm");
 
 /// The signature of an effect with these values.
 pub(super) fn signature(stage: &Stage, values: &[f64]) -> Result<Signature, SimulateError> {
+    if stage.effect.site().is_hydraulic() {
+        return of_drive(stage, values);
+    }
     match stage.effect.action(values) {
         Action::Force(law) => Ok(of_law(stage, law.as_ref())),
         Action::Member(build) => Ok(of_law(stage, build(&stage.model, &stage.at).as_ref())),
@@ -286,6 +291,24 @@ fn of_response(before: &Model, after: &Model) -> Result<Signature, ModelError> {
         samples: false,
         change,
         quantity: ("displacement per force", "mm/N"),
+    })
+}
+
+/// The motion of a hydraulic drive under position control.
+fn of_drive(stage: &Stage, values: &[f64]) -> Result<Signature, SimulateError> {
+    let effect = Placed::new(stage.effect, stage.at.clone(), values.to_vec());
+    let line = |effects: &[Placed]| -> Result<Curve, SimulateError> {
+        Ok(curve(times().into_iter(), &follows(stage, effects)?, 1e3))
+    };
+    let (without, with) = (line(&[])?, line(&[effect])?);
+    Ok(Signature {
+        over: Over::Time,
+        range: None,
+        change: relative(&without, &with, 1.0),
+        without,
+        with,
+        samples: false,
+        quantity: OUTPUT,
     })
 }
 
