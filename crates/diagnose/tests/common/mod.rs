@@ -134,6 +134,7 @@ pub(crate) fn record(
         let unit = match drive.kind {
             InputKind::Force => "N",
             InputKind::Displacement => "m",
+            InputKind::Command | InputKind::SetPoint => "1",
         };
         let values = match k {
             0 if input_noise > 0.0 => noisy(&input, input_noise),
@@ -148,6 +149,10 @@ pub(crate) fn record(
             OutputKind::Force => "N",
             OutputKind::Velocity => "m/s",
             OutputKind::Displacement => "m",
+            OutputKind::Roll => "rad",
+            OutputKind::Pressure => "Pa",
+            OutputKind::Flow => "m^3/s",
+            OutputKind::Spool => "1",
         };
         let values = noisy(signal, NOISE);
         channels.push(Channel::new(&output.channel, unit, values));
