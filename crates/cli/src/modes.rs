@@ -144,7 +144,11 @@ pub(crate) fn operating_point(model: &Model) -> (Vec<f64>, Vec<String>) {
         ));
     }
     let at = model.equilibrium().unwrap_or_else(|error| {
-        notes.push(format!("linearised about zero displacement: {error}"));
+        if model.cylinders.is_empty() {
+            notes.push(format!("linearised about zero displacement: {error}"));
+        } else {
+            notes.push("linearised about the start: zero displacement, valves in their middle, the pressures of the cylinders".to_owned());
+        }
         vec![0.0; model.dof_count()]
     });
     if model.dof_count() == 0 {

@@ -340,7 +340,7 @@ fn is_driven(model: &Model, output: &Output) -> bool {
     }
     let ends = output.at.iter().chain(output.between.iter().flatten());
     let mut reached: Vec<&str> = ends.map(String::as_str).collect();
-    let members = model.members();
+    let members = model.joined();
     loop {
         let joined = members.iter().find_map(|pair| {
             let [a, b] = [pair[0].as_str(), pair[1].as_str()];

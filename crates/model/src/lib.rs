@@ -48,6 +48,7 @@ mod error;
 mod file;
 mod frf;
 mod hydraulics;
+mod joined;
 mod matrices;
 mod model;
 mod modes;
@@ -65,7 +66,7 @@ pub use body::{Body, Point};
 pub use error::ModelError;
 pub use file::SCHEMA;
 pub use frf::{FrfKind, frequency_response};
-pub use hydraulics::{Cylinder, PRESSURE_UNIT_PA, Valve};
+pub use hydraulics::{Cylinder, DriveValue, PRESSURE_UNIT_PA, Valve};
 pub use matrices::StructuralMatrices;
 pub use model::{Model, same_pair};
 pub use modes::{

@@ -1,6 +1,6 @@
 //! The values of a model file that the linear part of the plant depends on.
 
-use crate::{BeamValue, Model};
+use crate::{BeamValue, DriveValue, Model};
 
 /// A value of the model file that the linear part of the plant depends on, by its place in the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
@@ -16,6 +16,8 @@ pub enum Parameter {
     Pendulum(usize),
     /// A value of a beam.
     Beam(usize, BeamValue),
+    /// A value of a cylinder, a valve or a block, by its place among these.
+    Drive(usize, DriveValue),
 }
 
 impl Model {
@@ -24,7 +26,9 @@ impl Model {
     pub fn parameters(&self) -> Vec<Parameter> {
         let masses = self.masses.iter().enumerate();
         let masses = masses
-            .filter(|(_, mass)| !self.is_beam_coordinate(&mass.name))
+            .filter(|(_, mass)| {
+                !(self.is_beam_coordinate(&mass.name) || self.is_internal(&mass.name))
+            })
             .map(|(i, _)| Parameter::Mass(i));
         let springs = self.springs.iter().enumerate();
         let springs = springs
@@ -32,6 +36,8 @@ impl Model {
             .map(|(i, _)| Parameter::Spring(i));
         let beams = (0..self.beams.len())
             .flat_map(|i| BeamValue::ALL.map(|value| Parameter::Beam(i, value)));
+        let drives = self.drive_values().into_iter();
+        let drives = drives.map(|(i, value)| Parameter::Drive(i, value));
         let dampers = (0..self.dampers.len()).map(Parameter::Damper);
         let pendulums = (0..self.pendulums.len()).map(Parameter::Pendulum);
         masses
@@ -39,6 +45,7 @@ impl Model {
             .chain(dampers)
             .chain(pendulums)
             .chain(beams)
+            .chain(drives)
             .collect()
     }
 
@@ -51,6 +58,7 @@ impl Model {
             Parameter::Damper(i) => self.dampers.get(i).map(|damper| damper.damping),
             Parameter::Pendulum(i) => self.pendulums.get(i).map(|pendulum| pendulum.value),
             Parameter::Beam(i, value) => self.beam_value(i, value),
+            Parameter::Drive(i, value) => self.drive_value(i, value),
         }
     }
 
@@ -73,6 +81,7 @@ impl Model {
                 let beam = named("beam", self.beams.get(i).map(|part| &part.name));
                 format!("{beam} {}", value.name())
             }
+            Parameter::Drive(i, value) => self.drive_value_name(i, value),
         }
     }
 }

@@ -129,6 +129,9 @@ impl Model {
             part.stiffness_matrix *= faer::Scale(stiffness);
             return Ok(part);
         }
+        if let Parameter::Drive(i, value) = parameter {
+            return self.drive_matrices(i, value)?.ok_or_else(missing);
+        }
         // The matrices are linear in the other parameters: those of the part alone, with the value one.
         let mut part = Model {
             masses: self.masses.clone(),
@@ -137,7 +140,10 @@ impl Model {
             ..Model::default()
         };
         match parameter {
-            Parameter::Mass(_) | Parameter::Pendulum(_) | Parameter::Beam(..) => (),
+            Parameter::Mass(_)
+            | Parameter::Pendulum(_)
+            | Parameter::Beam(..)
+            | Parameter::Drive(..) => (),
             Parameter::Spring(i) => {
                 let mut spring = self.springs.get(i).ok_or_else(missing)?.clone();
                 spring.stiffness = 1.0;
@@ -161,7 +167,10 @@ impl Model {
                 alone.pendulums = vec![only];
                 matrices.stiffness_matrix = alone.linearise(displacements)?.stiffness_matrix;
             }
-            Parameter::Spring(_) | Parameter::Damper(_) | Parameter::Beam(..) => (),
+            Parameter::Spring(_)
+            | Parameter::Damper(_)
+            | Parameter::Beam(..)
+            | Parameter::Drive(..) => (),
         }
         Ok(matrices)
     }

@@ -5,7 +5,7 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use simgap_model::{Model, damped_modes_of};
+use simgap_model::{Model, Parameter, damped_modes_of};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
 use support::{between, largest_difference, placed, predict, run, sampled};
 
@@ -259,4 +259,42 @@ fn verify_the_file_is_written_as_it_is_read() {
     let model = axis();
     let again = Model::from_toml(&model.to_toml().unwrap()).unwrap();
     assert_eq!(again, model);
+}
+
+/// Central differences leave about this of a pole; and poles are good to 1e-13 of the largest, 500 rad/s, which a
+/// difference over 2e-5 enlarges.
+const SLOPES: f64 = 1e-6;
+const ROUNDING_OF_POLES: f64 = 1e-13 * 500.0 / 2e-5;
+
+#[test]
+fn verify_sensitivities_of_a_drive_against_finite_differences() {
+    let model = axis();
+    let at = vec![0.0; model.dof_count()];
+    let parameters = model.parameters();
+    let found = model.pole_sensitivities(&at).unwrap();
+    let first_order = model.first_order();
+    let poles = |model: &Model| damped_modes_of(&model.matrices().unwrap(), &first_order).unwrap();
+    assert_eq!(found.len(), poles(&model).len());
+    let step = 1e-5;
+    let mut seen = 0;
+    for (k, parameter) in parameters.iter().enumerate() {
+        let Parameter::Drive(i, value) = *parameter else {
+            continue;
+        };
+        seen += 1;
+        let at = model.parameter_value(*parameter).unwrap();
+        let moved = |factor: f64| poles(&model.with_drive_value(i, value, factor));
+        let (high, low) = (moved(1.0 + step), moved(1.0 - step));
+        for (r, pole) in found.iter().enumerate() {
+            let slope = (high[r].eigenvalue - low[r].eigenvalue) / (2.0 * step);
+            let own = pole.derivative.as_ref().unwrap()[k] * at;
+            let off = (own - slope).norm() / pole.pole.norm();
+            assert!(
+                off < SLOPES,
+                "{}: {own} {slope}",
+                model.parameter_name(*parameter)
+            );
+        }
+    }
+    assert_eq!(seen, 9);
 }

@@ -132,6 +132,11 @@ impl Beam {
         format!("{}.mode{mode}", self.name)
     }
 
+    /// Whether a coordinate is one of the modes.
+    pub(crate) fn is_mode(&self, coordinate: &str) -> bool {
+        (1..=self.modes).any(|mode| self.mode_name(mode) == coordinate)
+    }
+
     /// ρ b h L, kg.
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
@@ -266,7 +271,7 @@ impl Model {
     #[must_use]
     pub fn is_beam_mode(&self, coordinate: &str) -> bool {
         let mut beams = self.beams.iter();
-        beams.any(|beam| (1..=beam.modes).any(|mode| beam.mode_name(mode) == coordinate))
+        beams.any(|beam| beam.is_mode(coordinate))
     }
 
     /// Whether a coordinate belongs to a beam: a mode or a free end.

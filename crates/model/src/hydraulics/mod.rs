@@ -14,9 +14,11 @@
 //! each other.
 
 mod cylinder;
+mod value;
 mod valve;
 
 pub use cylinder::Cylinder;
+pub use value::DriveValue;
 pub use valve::Valve;
 
 /// P of (1), Pa.
