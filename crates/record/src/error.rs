@@ -30,6 +30,14 @@ impl fmt::Display for Place {
     }
 }
 
+/// The flag for a missing value in a file of text.
+fn mending(at: Place, found: &str) -> &'static str {
+    match at {
+        Place::Line(_) if crate::logger::is_missing(found) => "; --mend takes it as missing",
+        _ => "",
+    }
+}
+
 /// Why a record cannot be read, made or written. Each message is one line: file, line or column,
 /// what was found, what is needed.
 #[derive(Debug, thiserror::Error)]
@@ -193,7 +201,9 @@ pub enum RecordError {
         needed: usize,
     },
     /// An empty cell.
-    #[error("{file}: line {line}: column '{column}' is empty, but a number is needed")]
+    #[error(
+        "{file}: line {line}: column '{column}' is empty, but a number is needed; --mend takes it as missing"
+    )]
     MissingCell {
         /// File or record.
         file: String,
@@ -215,7 +225,7 @@ pub enum RecordError {
         found: String,
     },
     /// NaN, an infinity, or a number too large for a double.
-    #[error("{file}: {at}: column '{column}' holds '{found}', but a finite number is needed")]
+    #[error("{file}: {at}: column '{column}' holds '{found}', but a finite number is needed{}", mending(*at, found))]
     NotFinite {
         /// File or record.
         file: String,

@@ -55,10 +55,15 @@ mod format;
 #[cfg(feature = "matlab73")]
 mod hdf5;
 #[cfg(feature = "matlab73")]
+mod hdf5_cells;
+#[cfg(feature = "matlab73")]
+mod hdf5_newest;
+#[cfg(feature = "matlab73")]
 mod hdf5_types;
 mod logger;
 mod map;
 mod mat5;
+mod mat_objects;
 #[cfg(feature = "mdf")]
 mod mdf;
 mod mend;

@@ -132,11 +132,11 @@ fn regress_messages_about_cells() {
     long text: A.csv: line 6: column 'y' holds 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx…', but a number is needed
     quoted decimal comma: A.csv: line 6: column 'y' holds '4,5', but a number is needed
     bare decimal comma: A.csv: line 6: 3 cells found, but the header has 2
-    missing: A.csv: line 6: column 'y' is empty, but a number is needed
+    missing: A.csv: line 6: column 'y' is empty, but a number is needed; --mend takes it as missing
     too few: A.csv: line 6: 1 cells found, but the header has 2
     too many: A.csv: line 6: 3 cells found, but the header has 2
     shifted by a remark: A.csv: line 6: 3 cells found, but the header has 2
-    NaN: A.csv: line 6: column 'y' holds 'NaN', but a finite number is needed
+    NaN: A.csv: line 6: column 'y' holds 'NaN', but a finite number is needed; --mend takes it as missing
     infinite: A.csv: line 6: column 'y' holds '-inf', but a finite number is needed
     too large: A.csv: line 6: column 'y' holds '1e999', but a finite number is needed
     time is text: A.csv: line 6: column 't' holds 'now', but a number is needed
@@ -277,8 +277,8 @@ fn regress_messages_about_records_made_in_memory() {
     insta::assert_snapshot!(lines.join("\n"), @r"
     generated: 3 row(s) of data found, but at least 8 are needed
     generated: column 'y' has 9 values, but there are 10 time stamps
-    generated: row 4: column 'y' holds 'NaN', but a finite number is needed
-    generated: row 4: column 't' holds 'NaN', but a finite number is needed
+    generated: row 4: column 'y' holds 'NaN', but a finite number is needed; --mend takes it as missing
+    generated: row 4: column 't' holds 'NaN', but a finite number is needed; --mend takes it as missing
     generated: names: columns 1 and 2 are both named 'y'; names must differ
     generated: row 1: time goes from 9 s to 8 s, but every stamp must be later than the one before (repeated stamps often have too few decimals)
     generated: a start of 0 s and a step of -1 s found, but a finite start and a finite positive step are needed

@@ -25,6 +25,16 @@ const FILES: &[&str] = &[
     "variants/simulink.mat",
     "variants/others.mat",
     "variants/epoch-ns.mat",
+    "variants/table-v7.mat",
+    "variants/timetable-v7.mat",
+    "variants/each.mat",
+    "variants/savetxt.txt",
+    "variants/milliseconds.tdms",
+    "variants/late.uff",
+    "instruments/lvm-no-x.lvm",
+    "instruments/siglent-sds.csv",
+    "instruments/keysight-daq.csv",
+    "instruments/px4-ulog.csv",
     "variants/savetxt-header.txt",
     "instruments/lvm-one-x.lvm",
     "instruments/lvm-each-x.lvm",
@@ -53,6 +63,12 @@ const FILES: &[&str] = &[
     "variants/polars-duration.parquet",
     #[cfg(feature = "matlab73")]
     "variants/latest.h5",
+    #[cfg(feature = "matlab73")]
+    "variants/extents.h5",
+    #[cfg(feature = "matlab73")]
+    "variants/timetable-v73.mat",
+    #[cfg(feature = "matlab73")]
+    "variants/signals-v73.mat",
     #[cfg(feature = "matlab73")]
     "variants/records.h5",
     #[cfg(feature = "parquet")]
