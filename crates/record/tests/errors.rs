@@ -277,8 +277,8 @@ fn regress_messages_about_records_made_in_memory() {
     insta::assert_snapshot!(lines.join("\n"), @r"
     generated: 3 row(s) of data found, but at least 8 are needed
     generated: column 'y' has 9 values, but there are 10 time stamps
-    generated: row 4: column 'y' holds 'NaN', but a finite number is needed; --mend takes it as missing
-    generated: row 4: column 't' holds 'NaN', but a finite number is needed; --mend takes it as missing
+    generated: row 4: column 'y' holds 'NaN', but a finite number is needed
+    generated: row 4: column 't' holds 'NaN', but a finite number is needed
     generated: names: columns 1 and 2 are both named 'y'; names must differ
     generated: row 1: time goes from 9 s to 8 s, but every stamp must be later than the one before (repeated stamps often have too few decimals)
     generated: a start of 0 s and a step of -1 s found, but a finite start and a finite positive step are needed
