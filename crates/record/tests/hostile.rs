@@ -38,6 +38,7 @@ const FILES: &[&str] = &[
     "instruments/lvm-each-x.lvm",
     "instruments/F0000CH1.CSV",
     "instruments/rigol-ds1000z.csv",
+    "instruments/rigol-mso5000.csv",
     "instruments/gw-instek-fast.csv",
     "instruments/twincat-scope.csv",
     "instruments/campbell-toa5.dat",

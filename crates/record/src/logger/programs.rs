@@ -29,6 +29,9 @@ pub(super) fn read(
     if let Some(header) = scopes::rigol_header(&lines) {
         return scopes::rigol(file, text, header, notes).map(Some);
     }
+    if let Some(base) = scopes::rigol_inline(&lines) {
+        return scopes::rigol_later(file, text, base, notes).map(Some);
+    }
     if scopes::is_instek(text, &lines) {
         return scopes::instek(file, text, notes).map(Some);
     }
