@@ -27,6 +27,7 @@ const FILES: &[&str] = &[
     "variants/epoch-ns.mat",
     "variants/table-v7.mat",
     "variants/timetable-v7.mat",
+    "variants/timetable-v6.mat",
     "variants/each.mat",
     "variants/milliseconds.tdms",
     "variants/late.uff",

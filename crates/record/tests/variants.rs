@@ -212,6 +212,7 @@ fn assert_tables(ending: &str) {
 #[test]
 fn val_mat_io_tables() {
     assert_tables("v7");
+    holds("timetable-v6.mat", &["u=u [kN]", "y=y [mm]"], WHOLE);
 }
 
 /// What is left out is told where it is asked for.

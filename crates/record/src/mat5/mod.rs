@@ -41,7 +41,7 @@ const MATRIX: u32 = 14;
 pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Workspace, FormatFault> {
     if level4::is_level_4(bytes) {
         return Err(FormatFault::Unsupported {
-            found: "a MATLAB 4 file, which has numbers without structures,".to_owned(),
+            found: "a file of MATLAB 4".to_owned(),
             instead: "save it with -v7 in MATLAB, or as CSV",
         });
     }
