@@ -1,42 +1,11 @@
 //! What can be wrong with a record.
 
-use std::fmt;
 use std::io;
 
 use crate::faults::{FormatFault, MapFault, MendFault, SelectionFault, TextFault};
+pub use crate::place::Place;
+use crate::place::mending;
 use crate::{Format, MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS, Quantity, UNEVEN_FRACTION, UnitKind};
-
-/// Where in a record a value stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    /// Line of a file, counted from 1.
-    Line(u64),
-    /// Row of a record without lines, counted from 0.
-    Row(usize),
-    /// Byte of a file, counted from 0.
-    Byte(u64),
-    /// Names of a record made in memory.
-    Names,
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Place::Line(line) => write!(f, "line {line}"),
-            Place::Row(row) => write!(f, "row {row}"),
-            Place::Byte(byte) => write!(f, "byte {byte}"),
-            Place::Names => f.write_str("names"),
-        }
-    }
-}
-
-/// The flag for a missing value in a file of text.
-fn mending(at: Place, found: &str) -> &'static str {
-    match at {
-        Place::Line(_) if crate::logger::is_missing(found) => "; --mend takes it as missing",
-        _ => "",
-    }
-}
 
 /// Why a record cannot be read, made or written. Each message is one line: file, line or column,
 /// what was found, what is needed.

@@ -71,6 +71,7 @@ mod mended;
 mod note;
 mod open;
 mod overload;
+mod place;
 mod quality;
 mod raw;
 mod record;

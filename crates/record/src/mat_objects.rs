@@ -31,6 +31,7 @@ const DATED_MS: f64 = 1e11;
 pub(crate) const MOST_WORDS: usize = 64;
 /// Columns of a table that are looked at.
 const MOST_COLUMNS: usize = 1000;
+const MOST_COLUMNS_OF_ALL: usize = 10_000;
 /// Why other objects are left out.
 pub(crate) const OBJECT: &str =
     "it is a timeseries or another object of MATLAB; save its numbers, such as x.Time and x.Data";
@@ -92,6 +93,8 @@ struct Objects {
     arrays: HashMap<String, Array>,
     texts: HashMap<String, String>,
     references: HashMap<String, Vec<u32>>,
+    /// Columns of tables so far: many variables may stand for one object.
+    columns: usize,
 }
 
 impl Objects {
@@ -125,6 +128,7 @@ impl Objects {
             arrays,
             texts: values.texts,
             references: references.into_iter().map(|r| (r.path, r.words)).collect(),
+            columns: 0,
             words,
         };
         objects.within();
@@ -226,6 +230,10 @@ impl Objects {
             let Some(name) = self.texts.get(&format!("{names}{{{k}}}")) else {
                 break;
             };
+            self.columns += 1;
+            if self.columns > MOST_COLUMNS_OF_ALL {
+                break;
+            }
             let (own, at) = (format!("{path}.{name}"), format!("{data}{{{k}}}"));
             let numbers = self.arrays.remove(&at);
             let words = self.references.remove(&at);

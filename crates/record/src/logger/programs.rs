@@ -63,7 +63,7 @@ pub(super) fn value(
     number(cell, decimal_comma).ok_or_else(|| RecordError::NotANumber {
         file: file.to_owned(),
         line: line as u64 + 1,
-        column: column.to_owned(),
+        column: shortened(column),
         found: shortened(cell),
     })
 }

@@ -293,6 +293,10 @@ impl File<'_> {
             let field = names.part(length, WHAT)?;
             fields.push(text(field)?);
         }
+        if fields.is_empty() {
+            // However many such structures there are said to be, they hold nothing.
+            return Ok(());
+        }
         let mut columns = vec![Vec::new(); fields.len()];
         for index in 0..count {
             if data.left() == 0 {
