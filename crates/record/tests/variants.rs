@@ -201,6 +201,11 @@ fn assert_tables(ending: &str) {
     );
     let told = holds(&format!("timetable-{ending}.mat"), &units, WHOLE);
     assert!(!told.contains("assumed"), "{told}");
+    let by_rate = Expected {
+        stamped_s: 2.0,
+        ..WHOLE
+    };
+    holds(&format!("rate-{ending}.mat"), &units, by_rate);
     // Milliseconds since 1970 have a digit for 0.2 us.
     let dated = Expected {
         stamp_steps: 1e-4,
