@@ -61,6 +61,8 @@ const FILES: &[&str] = &[
     "variants/version-3.mdf",
     #[cfg(feature = "parquet")]
     "variants/polars-duration.parquet",
+    #[cfg(feature = "parquet")]
+    "variants/half-decimal.parquet",
     #[cfg(feature = "matlab73")]
     "variants/latest.h5",
     #[cfg(feature = "matlab73")]

@@ -85,6 +85,11 @@ fn val_parquet_times() {
             "{told}"
         );
     }
+    let half = Expected {
+        tolerance: motion::HALF,
+        ..WHOLE
+    };
+    holds("half-decimal.parquet", &["u=u", "y=y"], half);
     let refusal = refused(FOLDER, "since-boot.parquet", &options(&["u=u", "y=y"])).to_string();
     assert!(
         refusal.contains("--map \"t=timestamp [us]\" (200 Hz)"),
