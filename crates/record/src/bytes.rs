@@ -90,7 +90,7 @@ impl<'a> Bytes<'a> {
         Ok(array)
     }
 
-    #[cfg(any(feature = "xlsx", feature = "arrow"))]
+    #[cfg(feature = "xlsx")]
     pub(crate) fn u16(&mut self, what: &'static str) -> Result<u16, FormatFault> {
         self.array(what).map(u16::from_le_bytes)
     }

@@ -28,6 +28,10 @@
 
 mod arrays;
 #[cfg(any(feature = "arrow", feature = "parquet"))]
+#[cfg_attr(
+    not(feature = "arrow"),
+    expect(dead_code, reason = "Parquet needs the schema alone")
+)]
 mod arrow;
 mod base;
 mod batch;
@@ -50,6 +54,15 @@ mod fill;
     feature = "parquet",
     feature = "xlsx"
 ))]
+#[cfg_attr(
+    not(any(
+        feature = "matlab73",
+        feature = "mdf",
+        feature = "parquet",
+        feature = "xlsx"
+    )),
+    expect(dead_code, reason = "Arrow is read without another crate's reader")
+)]
 mod foreign;
 mod format;
 #[cfg(feature = "matlab73")]
