@@ -61,7 +61,7 @@ mod fill;
         feature = "parquet",
         feature = "xlsx"
     )),
-    expect(dead_code, reason = "Arrow is read without another crate's reader")
+    allow(dead_code, reason = "Arrow is read without another crate's reader")
 )]
 mod foreign;
 mod format;
