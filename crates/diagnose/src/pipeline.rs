@@ -187,6 +187,7 @@ fn known_kinds(withheld: &[String]) -> Result<(), DiagnoseError> {
 
 fn prepare(request: &Request<'_>, data: &Data) -> Result<Prepared, DiagnoseError> {
     let mut train = Problem::new(request.model, data.train.clone())?;
+    train.leaves_out_ends = true;
     let options = FitOptions::white(request.model.outputs.len());
     let mut nominal = fit_initial_states(&train, &[], &options)?;
     if let Some(filters) = whitening(&train, &data.check, &nominal, &options)? {
@@ -212,7 +213,8 @@ fn prepare(request: &Request<'_>, data: &Data) -> Result<Prepared, DiagnoseError
         ..options
     };
     let recalibrated = recalibrate(&train, &start, &loose)?;
-    let excerpt = train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy));
+    let mut excerpt = train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy));
+    excerpt.leaves_out_ends = true;
     Ok(Prepared {
         train,
         excerpt,

@@ -22,6 +22,9 @@ pub struct Problem {
     pub whitening: Whitening,
     /// Typical sizes at places: effects there are fitted under the priors that follow from them, elsewhere without any.
     pub scales: Vec<(Location, SiteScale)>,
+    /// Whether the samples at either end of a run that a late or early channel may leave out
+    /// ([`simgap_effects::most_beyond`]) count for no set, so that sets are compared on the same samples; not so at first.
+    pub leaves_out_ends: bool,
 }
 
 /// How a fit counts what it leaves, and when it stops.
@@ -85,10 +88,11 @@ impl Problem {
             substeps,
             whitening: Whitening::default(),
             scales: vec![],
+            leaves_out_ends: false,
         })
     }
 
-    /// The same model with other runs, the same steps and filters.
+    /// The same model with other runs, the same steps and filters; every sample counts.
     #[must_use]
     pub fn with_runs(&self, runs: Vec<Run>) -> Problem {
         Problem {
@@ -98,6 +102,7 @@ impl Problem {
             substeps: self.substeps,
             whitening: self.whitening.clone(),
             scales: self.scales.clone(),
+            leaves_out_ends: false,
         }
     }
 
@@ -106,6 +111,7 @@ impl Problem {
     pub fn unfiltered(&self) -> Problem {
         Problem {
             whitening: Whitening::default(),
+            leaves_out_ends: self.leaves_out_ends,
             ..self.with_runs(self.runs.clone())
         }
     }

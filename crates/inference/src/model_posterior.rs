@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! p(S | y) = p(S) Z(S) / Σ p(S') Z(S')                                     (1)
-//! p(effect | y) = Σ p(S | y) over the sets that hold it or one that cannot be told from it     (2)
+//! p(A | y) = Σ p(S | y) over the sets S of which A is what is worth a name    (2)
+//! p(effect | y) = Σ p(A | y) over the answers that hold it or one that cannot be told from it  (3)
 //! ```
 //!
-//! A set is a candidate only if each of its effects closes a share of the gap that is worth a name (*practical
-//! relevance*): what closes less belongs to the smaller set. Effects that can be exchanged within the stated odds cannot
-//! be told apart.
+//! An effect is worth a name if it closes a share of the gap that matters (*practical relevance*). A set with one that is not
+//! speaks for the smaller set: what it explains better is no reason to name another cause. Effects that can be exchanged within
+//! the stated odds cannot be told apart.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -28,7 +29,7 @@ const OF_MOTION: f64 = 0.003;
 const OF_REST: f64 = 0.5;
 /// Log odds within which effects cannot be told apart: one to twenty.
 const INDISTINGUISHABLE: f64 = 3.0;
-/// Log odds beyond which a set does not count.
+/// Log odds beyond which an answer does not count.
 const NEGLIGIBLE: f64 = 12.0;
 
 /// What could stand in the place of a named effect.
@@ -45,9 +46,9 @@ pub struct Rival {
 pub struct EffectPosterior {
     /// The effect.
     pub placed: Placed,
-    /// (2), among the sets.
+    /// (3), among the answers.
     pub probability: f64,
-    /// ln Z + ln p lost without it.
+    /// Log posterior of the answer lost without it.
     pub worth: f64,
     /// Share of the gap that it closes, rms, in the channel that profits most.
     pub closes: f64,
@@ -59,9 +60,11 @@ pub struct EffectPosterior {
 
 /// The posterior.
 pub struct ModelPosterior {
-    /// The sets, likeliest first.
+    /// The sets that are answers, likeliest first.
     pub sets: Vec<CandidateModel>,
-    /// (1) of each.
+    /// Logarithm of (2) of each, but for a constant that all share.
+    pub log_posteriors: Vec<f64>,
+    /// (2) of each.
     pub probabilities: Vec<f64>,
     /// The effects of the first.
     pub effects: Vec<EffectPosterior>,
@@ -100,16 +103,15 @@ pub fn model_posterior(
         gap: gap.to_vec(),
         motion: search.problem.output_std(),
     };
-    let sets = relevance.keep_relevant(search, pool)?;
-    let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
-    let odds: Vec<f64> = sets
-        .iter()
-        .map(|set| (set.log_posterior() - best).exp())
-        .collect();
+    let (sets, log_posteriors) = relevance.answers(search, pool)?;
+    let best = log_posteriors.first().copied().unwrap_or(0.0);
+    let odds = log_posteriors.iter().map(|log| (log - best).exp());
+    let odds: Vec<f64> = odds.collect();
     let all: f64 = odds.iter().sum();
     let mut posterior = ModelPosterior {
         probabilities: odds.iter().map(|odds| odds / all).collect(),
         sets,
+        log_posteriors,
         effects: vec![],
     };
     let effects = posterior.sets.first().map_or(0, |set| set.effects().len());
@@ -166,38 +168,41 @@ impl Relevance {
         })
     }
 
-    /// The sets of which every effect is relevant, likeliest first.
-    fn keep_relevant(
+    /// The sets of which every effect is relevant, each with the logarithm of (2), likeliest first.
+    fn answers(
         &self,
         search: &Search<'_>,
         mut pool: Vec<CandidateModel>,
-    ) -> Result<Vec<CandidateModel>, EstimateError> {
+    ) -> Result<(Vec<CandidateModel>, Vec<f64>), EstimateError> {
         // Of each set its best fit.
         rank(&mut pool);
         let mut asked = Asked::default();
         asked.extend(pool);
         let mut best = f64::NEG_INFINITY;
-        while let Some(index) = asked.next() {
-            let set = asked.sets[index].clone();
-            if set.log_posterior() < best - NEGLIGIBLE {
+        while let Some(mut index) = asked.next() {
+            let log_posterior = asked.sets[index].log_posterior();
+            if log_posterior < best - NEGLIGIBLE {
                 break;
             }
-            let is_relevant = self.are_relevant(search, &set, &mut asked)?;
-            asked.relevant[index] = Some(is_relevant);
-            if is_relevant {
-                best = best.max(set.log_posterior());
+            // What it speaks for is as likely as it is, at the least, and is asked as well.
+            best = best.max(log_posterior);
+            while asked.speaks_for[index].is_none() {
+                let set = asked.sets[index].clone();
+                let other = self.without_irrelevant(search, &set, &mut asked)?;
+                asked.speaks_for[index] = Some(other.unwrap_or(index));
+                index = other.unwrap_or(index);
             }
         }
-        Ok(asked.kept())
+        Ok(asked.answers())
     }
 
-    /// Whether all effects of a set are relevant. Of an irrelevant one, the set without it is asked next.
-    fn are_relevant(
+    /// The place of the set that is left of one without an effect that is not relevant, or with less of it; `None` where all are.
+    fn without_irrelevant(
         &self,
         search: &Search<'_>,
         set: &CandidateModel,
         asked: &mut Asked,
-    ) -> Result<bool, EstimateError> {
+    ) -> Result<Option<usize>, EstimateError> {
         // What is fitted already tells soonest.
         let is_known = |i: &usize| asked.places.contains_key(&set.key_without(*i));
         let (mut order, unknown): (Vec<usize>, Vec<usize>) =
@@ -209,28 +214,31 @@ impl Relevance {
                 Some(&known) => asked.sets[known].clone(),
                 None => search.fit(&remove(&set.fit.estimate, i, search.nominal))?,
             };
-            let mut is_relevant = self.is_relevant(search, set, &smaller, &moved);
+            // A law beyond a special case of it is held to the same.
+            let is_relevant = |other: &CandidateModel| self.is_relevant(search, set, other, &moved);
+            let enough = match is_relevant(&smaller) {
+                true => search
+                    .shrink(set, i)
+                    .into_iter()
+                    .find(|special| !is_relevant(special)),
+                false => Some(smaller.clone()),
+            };
             asked.extend(vec![smaller]);
-            if is_relevant {
-                // A law beyond a special case of it is held to the same.
-                let special = search.shrink(set, i);
-                let mut each = special.iter();
-                is_relevant = each.all(|other| self.is_relevant(search, set, other, &moved));
-                asked.extend(special);
-            }
-            if !is_relevant {
-                return Ok(false);
+            if let Some(enough) = enough {
+                let key = enough.key();
+                asked.extend(vec![enough]);
+                return Ok(asked.places.get(&key).copied());
             }
         }
-        Ok(true)
+        Ok(None)
     }
 }
 
-/// Sets, and of each whether all its effects are relevant, once it was asked.
+/// Sets, and of each, once it was asked, the place of the set that it speaks for: its own where all its effects are relevant.
 #[derive(Default)]
 struct Asked {
     sets: Vec<CandidateModel>,
-    relevant: Vec<Option<bool>>,
+    speaks_for: Vec<Option<usize>>,
     /// Where each set is, by its key.
     places: BTreeMap<Vec<String>, usize>,
 }
@@ -242,28 +250,48 @@ impl Asked {
             if let Entry::Vacant(place) = self.places.entry(set.key()) {
                 place.insert(self.sets.len());
                 self.sets.push(set);
-                self.relevant.push(None);
+                self.speaks_for.push(None);
             }
         }
     }
 
     /// The likeliest of the sets that were not asked.
     fn next(&self) -> Option<usize> {
-        let open = (0..self.sets.len()).filter(|&i| self.relevant[i].is_none());
+        let open = (0..self.sets.len()).filter(|&i| self.speaks_for[i].is_none());
         let posterior = |i: &usize| self.sets[*i].log_posterior();
         // Of equals the first.
         open.rev()
             .max_by(|a, b| posterior(a).total_cmp(&posterior(b)))
     }
 
-    /// All but those that hold an irrelevant effect, likeliest first.
-    fn kept(self) -> Vec<CandidateModel> {
-        let sets = self.sets.into_iter().zip(self.relevant);
-        let kept = sets.filter(|(_, relevant)| *relevant != Some(false));
-        let mut kept: Vec<CandidateModel> = kept.map(|(set, _)| set).collect();
-        rank(&mut kept);
-        kept
+    /// The answers with the logarithm of (2), likeliest first. What was not asked counts too little to matter.
+    fn answers(self) -> (Vec<CandidateModel>, Vec<f64>) {
+        let answer_of = |mut place: usize| {
+            while let Some(next) = self.speaks_for[place].filter(|&next| next != place) {
+                place = next;
+            }
+            place
+        };
+        let mut terms: Vec<Vec<f64>> = vec![vec![]; self.sets.len()];
+        for (place, set) in self.sets.iter().enumerate() {
+            terms[answer_of(place)].push(set.log_posterior());
+        }
+        let answers = self.sets.into_iter().zip(&terms);
+        let answers = answers.filter(|(_, terms)| !terms.is_empty());
+        let mut answers: Vec<(CandidateModel, f64)> =
+            answers.map(|(set, terms)| (set, log_sum(terms))).collect();
+        answers.sort_by(|(a, p), (b, q)| q.total_cmp(p).then_with(|| a.key().cmp(&b.key())));
+        answers.into_iter().unzip()
     }
+}
+
+/// ln Σ exp of some logarithms.
+fn log_sum(logs: &[f64]) -> f64 {
+    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if most.is_infinite() {
+        return most;
+    }
+    most + logs.iter().map(|log| (log - most).exp()).sum::<f64>().ln()
 }
 
 /// What one effect of a set moves each output by, with everything else as it is, rms.
@@ -315,8 +343,10 @@ fn effect(
     let own_name = name(own);
     let key = best.key();
     let mut rivals: Vec<Rival> = vec![];
-    for set in &posterior.sets[1..] {
-        let log_odds = set.log_posterior() - best.log_posterior();
+    let answers = posterior.sets.iter().zip(&posterior.log_posteriors);
+    let of_best = posterior.log_posteriors[0];
+    for (set, log_posterior) in answers.clone().skip(1) {
+        let log_odds = log_posterior - of_best;
         if log_odds < -INDISTINGUISHABLE || set.key().contains(&own_name) {
             continue;
         }
@@ -349,14 +379,12 @@ fn effect(
             })
     };
     let smaller_key = best.key_without(index);
-    let smaller = posterior.sets.iter().find(|set| set.key() == smaller_key);
+    let smaller = answers.clone().find(|(set, _)| set.key() == smaller_key);
     EffectPosterior {
         placed: own.clone(),
         probability: posterior.sum(|set| set.effects().iter().any(is_one)),
-        worth: smaller.map_or(f64::INFINITY, |set| {
-            best.log_posterior() - set.log_posterior()
-        }),
-        closes: smaller.map_or(1.0, |set| relevance.closes(best, set)),
+        worth: smaller.map_or(f64::INFINITY, |(_, log)| of_best - log),
+        closes: smaller.map_or(1.0, |(set, _)| relevance.closes(best, set)),
         rivals,
         equivalents: same,
     }
