@@ -6,7 +6,7 @@ use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue
 use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, OutputKind};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
-use crate::{Candidate, EstimateError, Whitening};
+use crate::{Cancel, Candidate, EstimateError, Whitening};
 
 /// A nominal model and the runs it is compared with.
 pub struct Problem {
@@ -22,6 +22,8 @@ pub struct Problem {
     pub whitening: Whitening,
     /// Typical sizes at places: effects there are fitted under the priors that follow from them, elsewhere without any.
     pub scales: Vec<(Location, SiteScale)>,
+    /// Ends the work on it.
+    pub cancel: Cancel,
 }
 
 /// How a fit counts what it leaves, and when it stops.
@@ -85,6 +87,7 @@ impl Problem {
             substeps,
             whitening: Whitening::default(),
             scales: vec![],
+            cancel: Cancel::default(),
         })
     }
 
@@ -98,6 +101,7 @@ impl Problem {
             substeps: self.substeps,
             whitening: self.whitening.clone(),
             scales: self.scales.clone(),
+            cancel: self.cancel.clone(),
         }
     }
 
@@ -130,8 +134,9 @@ impl Problem {
     /// The nominal model with effects on top of those it has, as they are in one of the runs.
     ///
     /// # Errors
-    /// [`EstimateError`] when a place is not in the model.
+    /// [`EstimateError`] when a place is not in the model, or the work was cancelled.
     pub fn simulator(&self, effects: &[Placed], run: usize) -> Result<Simulator, EstimateError> {
+        self.cancel.check()?;
         let all = self.given.iter().chain(effects);
         let all: Vec<Placed> = all.map(|placed| placed.in_record(run)).collect();
         Simulator::new(&self.model, &all, self.substeps)
