@@ -173,8 +173,12 @@ impl Question<'_> {
     }
 
     /// The command that makes the result again, with the names of the files but not their folders, so
-    /// that the same input gives the same page wherever it lies; `None` where the model is from no file.
+    /// that the same input gives the same page wherever it lies; `None` where the model or a record is from no file.
     fn command_line(&self) -> Option<String> {
+        let mut inputs = self.train.iter().chain(self.check);
+        if !inputs.all(|input| input.is_file) {
+            return None;
+        }
         let mut words = vec![
             "simgap".to_string(),
             "diagnose".to_string(),

@@ -113,6 +113,8 @@ pub fn model_of(text: &str, path: &Path) -> Result<Model, AppError> {
 pub struct Input {
     /// The file, or the name of a record that comes from none: how messages call it.
     pub path: PathBuf,
+    /// Whether it is read from a file.
+    pub is_file: bool,
     /// The record; shared, because a record may be large.
     pub record: Arc<Record>,
     /// One sentence each.
@@ -125,6 +127,7 @@ impl Input {
     pub fn made(record: Arc<Record>) -> Input {
         Input {
             path: record.name().into(),
+            is_file: false,
             notes: vec![],
             record,
         }
@@ -217,6 +220,7 @@ fn told(path: &Path, reading: Reading) -> Input {
     let notes = reading.notes.iter().map(|note| format!("{name}: {note}"));
     Input {
         path: path.into(),
+        is_file: true,
         notes: notes.collect(),
         record: Arc::new(reading.record),
     }

@@ -29,6 +29,7 @@ pub fn simulate(model: &Model, input: &Input, from_rest: bool) -> Result<Simulat
         path,
         record,
         notes: read_notes,
+        ..
     } = input;
     let failed = |error: SimulateError| AppError::Simulate {
         path: path.clone(),

@@ -3,8 +3,8 @@
 use super::text::{code_lines, grouped_std_imports, has_word};
 use super::{Finding, Source, Workspace};
 
-/// Programs: they print, and know what time it is.
-const PROGRAMS: [&str; 2] = ["cli", "xtask"];
+/// Programs: they print, and know what time it is. `python` is one too: it ends work by a budget of seconds.
+const PROGRAMS: [&str; 3] = ["cli", "python", "xtask"];
 
 /// Who reads and writes files. `record` for everybody else: tables of numbers, and text put in
 /// place in one step. `report` makes pages in memory; `app` writes them for the program and for Python.
