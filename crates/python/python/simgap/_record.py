@@ -242,9 +242,11 @@ def _array(name: str, label: str, values: Any) -> np.ndarray:
     """An array of float64, the column's own memory where it is one."""
     plain = _plain(values)
     try:
-        return np.asarray(plain, dtype=np.float64)
+        array = np.asarray(plain, dtype=np.float64)
     except (TypeError, ValueError):
         found = getattr(plain, "dtype", type(plain).__name__)
         raise _simgap.SimgapError(
             f"{name}: column '{label}' holds {found}, needed are numbers"
         ) from None
+    # Fields of packed structures lie where no number can be read in place.
+    return array if array.flags.aligned else array.copy()
