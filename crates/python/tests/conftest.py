@@ -54,7 +54,7 @@ def axis_records(folder=None):
                 stuck = v * slid <= 0.0 and abs(force) <= friction
                 v = 0.0 if stuck else slid
                 x += h * v
-        q = 1e3 * q + rng.normal(0.0, 2e-3, samples)
+        q = 1e3 * q + rng.normal(0.0, 0.2, samples)
         found[name] = {"t": t, "drive": np.round(drive, 4), "q": np.round(q, 5)}
     if folder is not None:
         for name, columns in found.items():
