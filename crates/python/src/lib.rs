@@ -4,8 +4,8 @@
 //! person sees (classes, tables, pages in a notebook) is the Python half, in `python/simgap`. Nothing numerical is here.
 //!
 //! - Arrays of `float64` are copied once, into the record that keeps them; arrays of other types are converted first.
-//! - The interpreter is free for other threads while the work is done ([`work`]).
-//! - Every error is a `SimgapError` with the line that the command prints ([`error`]).
+//! - The interpreter is free for other threads while the work is done (module `work`).
+//! - Every error is a `SimgapError` with the line that the command prints (module `error`).
 
 mod answer;
 mod compared;

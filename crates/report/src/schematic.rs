@@ -1,7 +1,7 @@
 //! A picture of a model: nodes from the ground outwards, the members between them, what drives it and what is measured.
 //!
-//! Column d holds the nodes that are d members away from what does not move freely: the ground and moving bases in
-//! column 0. Members between the same nodes lie beside each other.
+//! Column d holds the nodes that are d members away from what does not move freely: the ground and, below all other rows,
+//! moving bases in column 0. Members between the same nodes lie beside each other.
 
 use simgap_model::{GROUND, InputKind, Location, Model, same_pair};
 
@@ -14,6 +14,8 @@ const ROW: f64 = 130.0;
 const BOX: [f64; 2] = [88.0, 52.0];
 /// The first column and the first row.
 const FIRST: [f64; 2] = [90.0, 80.0];
+/// Where the wall stands.
+const WALL: f64 = 30.0;
 /// Distance between members that lie beside each other.
 const BESIDE: f64 = 26.0;
 /// Half the width of a spring or a damper.
@@ -54,6 +56,8 @@ pub fn schematic_svg(model: &Model) -> String {
         for (k, (shape, name)) in members.iter().enumerate() {
             let beside = BESIDE * (k as f64 - (members.len() as f64 - 1.0) / 2.0);
             if let (Some(a), Some(b)) = (find(&nodes, &pair[0]), find(&nodes, &pair[1])) {
+                // From left to right, so that the first member lies above the next.
+                let (a, b) = if a.column > b.column { (b, a) } else { (a, b) };
                 body.push_str(&member(
                     *shape,
                     name,
@@ -100,13 +104,17 @@ fn placed(model: &Model) -> Vec<Node<'_>> {
         }
         columns.push(next);
     }
+    let most = columns.iter().skip(1).map(Vec::len).max().unwrap_or(0);
     let mut nodes = vec![];
     for (column, names) in columns.iter().enumerate() {
-        for (row, &name) in names.iter().enumerate() {
+        let mut row = if column == 0 { most } else { 0 };
+        for &name in names {
+            let is_wall = name == GROUND;
             let x = FIRST[0] + column as f64 * COLUMN;
-            let y = FIRST[1] + row as f64 * ROW;
+            let y = FIRST[1] + ROW * if is_wall { 0.0 } else { row as f64 };
             let at = [x, y];
             nodes.push(Node { name, column, at });
+            row += usize::from(!is_wall);
         }
     }
     nodes
@@ -130,7 +138,7 @@ fn members_between<'a>(model: &'a Model, pair: &[String; 2]) -> Vec<(Shape, &'a 
 fn edge(a: &Node<'_>, b: &Node<'_>, beside: f64) -> [f64; 2] {
     if a.name == GROUND {
         // The wall is as high as the picture.
-        return [FIRST[0] - 40.0, b.at[1] + beside];
+        return [WALL, b.at[1] + beside];
     }
     if a.column == b.column {
         let down = if b.at[1] > a.at[1] { 1.0 } else { -1.0 };
@@ -142,7 +150,7 @@ fn edge(a: &Node<'_>, b: &Node<'_>, beside: f64) -> [f64; 2] {
 
 /// The ground: a hatched wall.
 fn wall(height: f64) -> String {
-    let x = FIRST[0] - 40.0;
+    let x = WALL;
     let hatches: String = (0..((height - 40.0) / 12.0) as usize)
         .map(|k| {
             let y = 24.0 + 12.0 * k as f64;
@@ -248,7 +256,13 @@ fn boxed(model: &Model, node: &Node<'_>) -> String {
             x - w / 2.0
         ));
         let words = format!("{} ({kind})", input.channel);
-        text.push_str(&label([x + 24.0, above + 4.0], &words));
+        text.push_str(&format!(
+            "<text x=\"{}\" y=\"{}\" stroke=\"none\" fill=\"{}\">{}</text>",
+            x - w / 2.0 + 30.0,
+            above + 4.0,
+            NEUTRAL_COLOURS[0].light,
+            escape(&words)
+        ));
     }
     let measured = model.outputs.iter().filter(|output| match &output.between {
         Some([a, _]) => a == node.name,

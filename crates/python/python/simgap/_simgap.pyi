@@ -11,6 +11,21 @@ _Array = npt.NDArray[np.float64]
 _Path = str | os.PathLike[str]
 _Frame = list[tuple[str, _Array]]
 
+__all__ = [
+    "Answer",
+    "Compared",
+    "Model",
+    "Record",
+    "SimgapError",
+    "__version__",
+    "compare",
+    "diagnose",
+    "effects",
+    "modes",
+    "read",
+    "simulate",
+]
+
 __version__: str
 
 class SimgapError(ValueError):
