@@ -70,14 +70,13 @@ def test_the_corrected_model_predicts_what_the_answer_predicts(by_python):
 
 
 def test_simulations_are_those_of_the_command(tmp_path):
-    import pandas
-
     out = tmp_path / "predicted.csv"
     command_of("simulate", DEMO / "model.toml", "--record", DEMO / "check.csv", "--out", out)
-    by_command = pandas.read_csv(out, float_precision="round_trip")
+    header, *rows = out.read_text().splitlines()
     table = simgap.simulate(DEMO / "model.toml", DEMO / "check.csv")
-    assert list(table.columns) == list(by_command.columns)
-    assert (table.to_numpy() == by_command.to_numpy()).all()
+    assert list(table.columns) == header.split(",")
+    by_command = [[float(cell) for cell in row.split(",")] for row in rows]
+    assert table.to_numpy().tolist() == by_command
 
 
 def test_tables_are_those_of_the_command():
