@@ -81,3 +81,4 @@ pub use diagnosis::*;
 pub use error::DiagnoseError;
 pub use pipeline::{Outcome, Progress, Request, diagnose};
 pub use sets::{FittedEffect, FittedSet};
+pub use simgap_estimate::Cancel;
