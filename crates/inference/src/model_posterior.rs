@@ -2,13 +2,12 @@
 //!
 //! ```text
 //! p(S | y) = p(S) Z(S) / Σ p(S') Z(S')                                     (1)
-//! p(A | y) = Σ p(S | y) over the sets S of which A is what is worth a name    (2)
-//! p(effect | y) = Σ p(A | y) over the answers that hold it or one that cannot be told from it  (3)
+//! p(effect | y) = Σ p(S | y) over the sets that hold it or one that cannot be told from it     (2)
 //! ```
 //!
-//! An effect is worth a name if it closes a share of the gap that matters (*practical relevance*). A set with one that is not
-//! speaks for the smaller set: what it explains better is no reason to name another cause. Effects that can be exchanged within
-//! the stated odds cannot be told apart.
+//! A set is a candidate only if each of its effects closes a share of the gap that is worth a name (*practical
+//! relevance*): what closes less belongs to the smaller set. Effects that can be exchanged within the stated odds cannot
+//! be told apart.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -16,20 +15,20 @@ use std::collections::btree_map::Entry;
 use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
-use crate::candidate_model::{CandidateModel, is_bent, name, rank, remove};
+use crate::candidate_model::{CandidateModel, is_bent, is_nominal, name, rank, remove};
 use crate::noise_model::NOISE_KNOWN;
 use crate::other::RELEVANT_SHARE;
 use crate::search::Search;
 
 /// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
-/// name, nor one that moves every output by less than this share of its motion, rms;
+/// name, nor one, but for a wrong nominal parameter, that moves every output by less than this share of its motion, rms;
 const OF_MOTION: f64 = 0.003;
-/// nor one without which no more is left than no set is expected to explain, or that explains less than this share of what is
-/// left above the noise, mean square.
+/// nor one without which no more is left than no set is expected to explain; nor one beside others that explains less than this
+/// share of what is left above the noise, mean square.
 const OF_REST: f64 = 0.5;
 /// Log odds within which effects cannot be told apart: one to twenty.
 const INDISTINGUISHABLE: f64 = 3.0;
-/// Log odds beyond which an answer does not count.
+/// Log odds beyond which a set does not count.
 const NEGLIGIBLE: f64 = 12.0;
 
 /// What could stand in the place of a named effect.
@@ -46,9 +45,9 @@ pub struct Rival {
 pub struct EffectPosterior {
     /// The effect.
     pub placed: Placed,
-    /// (3), among the answers.
+    /// (2), among the sets.
     pub probability: f64,
-    /// Log posterior of the answer lost without it.
+    /// ln Z + ln p lost without it.
     pub worth: f64,
     /// Share of the gap that it closes, rms, in the channel that profits most.
     pub closes: f64,
@@ -60,11 +59,9 @@ pub struct EffectPosterior {
 
 /// The posterior.
 pub struct ModelPosterior {
-    /// The sets that are answers, likeliest first.
+    /// The sets, likeliest first.
     pub sets: Vec<CandidateModel>,
-    /// Logarithm of (2) of each, but for a constant that all share.
-    pub log_posteriors: Vec<f64>,
-    /// (2) of each.
+    /// (1) of each.
     pub probabilities: Vec<f64>,
     /// The effects of the first.
     pub effects: Vec<EffectPosterior>,
@@ -103,15 +100,16 @@ pub fn model_posterior(
         gap: gap.to_vec(),
         motion: search.problem.output_std(),
     };
-    let (sets, log_posteriors) = relevance.answers(search, pool)?;
-    let best = log_posteriors.first().copied().unwrap_or(0.0);
-    let odds = log_posteriors.iter().map(|log| (log - best).exp());
-    let odds: Vec<f64> = odds.collect();
+    let sets = relevance.keep_relevant(search, pool)?;
+    let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
+    let odds: Vec<f64> = sets
+        .iter()
+        .map(|set| (set.log_posterior() - best).exp())
+        .collect();
     let all: f64 = odds.iter().sum();
     let mut posterior = ModelPosterior {
         probabilities: odds.iter().map(|odds| odds / all).collect(),
         sets,
-        log_posteriors,
         effects: vec![],
     };
     let effects = posterior.sets.first().map_or(0, |set| set.effects().len());
@@ -159,86 +157,85 @@ impl Relevance {
         let left = without.fit.variance.iter().zip(noise);
         let channels = closed(with, without).zip(left);
         let mut channels = channels.zip(self.gap.iter().zip(moves));
+        let is_first = without.effects().is_empty();
         channels.any(|((closed, (left, (noise, floor))), (gap, moves))| {
             let stands_out = *left > NOISE_KNOWN * floor;
             stands_out
                 && moves
                 && closed > (RELEVANT_SHARE * gap).powi(2)
-                && closed > OF_REST * (left - noise)
+                && (is_first || closed > OF_REST * (left - noise))
         })
     }
 
-    /// The sets of which every effect is relevant, each with the logarithm of (2), likeliest first.
-    fn answers(
+    /// The sets of which every effect is relevant, likeliest first.
+    fn keep_relevant(
         &self,
         search: &Search<'_>,
         mut pool: Vec<CandidateModel>,
-    ) -> Result<(Vec<CandidateModel>, Vec<f64>), EstimateError> {
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
         // Of each set its best fit.
         rank(&mut pool);
         let mut asked = Asked::default();
         asked.extend(pool);
         let mut best = f64::NEG_INFINITY;
-        while let Some(mut index) = asked.next() {
-            let log_posterior = asked.sets[index].log_posterior();
-            if log_posterior < best - NEGLIGIBLE {
+        while let Some(index) = asked.next() {
+            let set = asked.sets[index].clone();
+            if set.log_posterior() < best - NEGLIGIBLE {
                 break;
             }
-            // What it speaks for is as likely as it is, at the least, and is asked as well.
-            best = best.max(log_posterior);
-            while asked.speaks_for[index].is_none() {
-                let set = asked.sets[index].clone();
-                let other = self.without_irrelevant(search, &set, &mut asked)?;
-                asked.speaks_for[index] = Some(other.unwrap_or(index));
-                index = other.unwrap_or(index);
+            let is_relevant = self.are_relevant(search, &set, &mut asked)?;
+            asked.relevant[index] = Some(is_relevant);
+            if is_relevant {
+                best = best.max(set.log_posterior());
             }
         }
-        Ok(asked.answers())
+        Ok(asked.kept())
     }
 
-    /// The place of the set that is left of one without an effect that is not relevant, or with less of it; `None` where all are.
-    fn without_irrelevant(
+    /// Whether all effects of a set are relevant. Of an irrelevant one, the set without it is asked next.
+    fn are_relevant(
         &self,
         search: &Search<'_>,
         set: &CandidateModel,
         asked: &mut Asked,
-    ) -> Result<Option<usize>, EstimateError> {
+    ) -> Result<bool, EstimateError> {
         // What is fitted already tells soonest.
         let is_known = |i: &usize| asked.places.contains_key(&set.key_without(*i));
         let (mut order, unknown): (Vec<usize>, Vec<usize>) =
             (0..set.effects().len()).partition(is_known);
         order.extend(unknown);
         for i in order {
-            let moved = moved(search, set, i)?;
+            // A wrong nominal parameter is told however little it moves: the others bend where it is kept as given.
+            let moved = match is_nominal(&set.effects()[i]) {
+                true => vec![f64::INFINITY; self.motion.len()],
+                false => moved(search, set, i)?,
+            };
             let smaller = match asked.places.get(&set.key_without(i)) {
                 Some(&known) => asked.sets[known].clone(),
                 None => search.fit(&remove(&set.fit.estimate, i, search.nominal))?,
             };
-            // A law beyond a special case of it is held to the same.
-            let is_relevant = |other: &CandidateModel| self.is_relevant(search, set, other, &moved);
-            let enough = match is_relevant(&smaller) {
-                true => search
-                    .shrink(set, i)
-                    .into_iter()
-                    .find(|special| !is_relevant(special)),
-                false => Some(smaller.clone()),
-            };
+            let mut is_relevant = self.is_relevant(search, set, &smaller, &moved);
             asked.extend(vec![smaller]);
-            if let Some(enough) = enough {
-                let key = enough.key();
-                asked.extend(vec![enough]);
-                return Ok(asked.places.get(&key).copied());
+            if is_relevant {
+                // A law beyond a special case of it is held to the same.
+                let special = search.shrink(set, i);
+                let mut each = special.iter();
+                is_relevant = each.all(|other| self.is_relevant(search, set, other, &moved));
+                asked.extend(special);
+            }
+            if !is_relevant {
+                return Ok(false);
             }
         }
-        Ok(None)
+        Ok(true)
     }
 }
 
-/// Sets, and of each, once it was asked, the place of the set that it speaks for: its own where all its effects are relevant.
+/// Sets, and of each whether all its effects are relevant, once it was asked.
 #[derive(Default)]
 struct Asked {
     sets: Vec<CandidateModel>,
-    speaks_for: Vec<Option<usize>>,
+    relevant: Vec<Option<bool>>,
     /// Where each set is, by its key.
     places: BTreeMap<Vec<String>, usize>,
 }
@@ -250,48 +247,28 @@ impl Asked {
             if let Entry::Vacant(place) = self.places.entry(set.key()) {
                 place.insert(self.sets.len());
                 self.sets.push(set);
-                self.speaks_for.push(None);
+                self.relevant.push(None);
             }
         }
     }
 
     /// The likeliest of the sets that were not asked.
     fn next(&self) -> Option<usize> {
-        let open = (0..self.sets.len()).filter(|&i| self.speaks_for[i].is_none());
+        let open = (0..self.sets.len()).filter(|&i| self.relevant[i].is_none());
         let posterior = |i: &usize| self.sets[*i].log_posterior();
         // Of equals the first.
         open.rev()
             .max_by(|a, b| posterior(a).total_cmp(&posterior(b)))
     }
 
-    /// The answers with the logarithm of (2), likeliest first. What was not asked counts too little to matter.
-    fn answers(self) -> (Vec<CandidateModel>, Vec<f64>) {
-        let answer_of = |mut place: usize| {
-            while let Some(next) = self.speaks_for[place].filter(|&next| next != place) {
-                place = next;
-            }
-            place
-        };
-        let mut terms: Vec<Vec<f64>> = vec![vec![]; self.sets.len()];
-        for (place, set) in self.sets.iter().enumerate() {
-            terms[answer_of(place)].push(set.log_posterior());
-        }
-        let answers = self.sets.into_iter().zip(&terms);
-        let answers = answers.filter(|(_, terms)| !terms.is_empty());
-        let mut answers: Vec<(CandidateModel, f64)> =
-            answers.map(|(set, terms)| (set, log_sum(terms))).collect();
-        answers.sort_by(|(a, p), (b, q)| q.total_cmp(p).then_with(|| a.key().cmp(&b.key())));
-        answers.into_iter().unzip()
+    /// All but those that hold an irrelevant effect, likeliest first.
+    fn kept(self) -> Vec<CandidateModel> {
+        let sets = self.sets.into_iter().zip(self.relevant);
+        let kept = sets.filter(|(_, relevant)| *relevant != Some(false));
+        let mut kept: Vec<CandidateModel> = kept.map(|(set, _)| set).collect();
+        rank(&mut kept);
+        kept
     }
-}
-
-/// ln Σ exp of some logarithms.
-fn log_sum(logs: &[f64]) -> f64 {
-    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if most.is_infinite() {
-        return most;
-    }
-    most + logs.iter().map(|log| (log - most).exp()).sum::<f64>().ln()
 }
 
 /// What one effect of a set moves each output by, with everything else as it is, rms.
@@ -343,10 +320,8 @@ fn effect(
     let own_name = name(own);
     let key = best.key();
     let mut rivals: Vec<Rival> = vec![];
-    let answers = posterior.sets.iter().zip(&posterior.log_posteriors);
-    let of_best = posterior.log_posteriors[0];
-    for (set, log_posterior) in answers.clone().skip(1) {
-        let log_odds = log_posterior - of_best;
+    for set in &posterior.sets[1..] {
+        let log_odds = set.log_posterior() - best.log_posterior();
         if log_odds < -INDISTINGUISHABLE || set.key().contains(&own_name) {
             continue;
         }
@@ -379,12 +354,14 @@ fn effect(
             })
     };
     let smaller_key = best.key_without(index);
-    let smaller = answers.clone().find(|(set, _)| set.key() == smaller_key);
+    let smaller = posterior.sets.iter().find(|set| set.key() == smaller_key);
     EffectPosterior {
         placed: own.clone(),
         probability: posterior.sum(|set| set.effects().iter().any(is_one)),
-        worth: smaller.map_or(f64::INFINITY, |(_, log)| of_best - log),
-        closes: smaller.map_or(1.0, |(set, _)| relevance.closes(best, set)),
+        worth: smaller.map_or(f64::INFINITY, |set| {
+            best.log_posterior() - set.log_posterior()
+        }),
+        closes: smaller.map_or(1.0, |set| relevance.closes(best, set)),
         rivals,
         equivalents: same,
     }

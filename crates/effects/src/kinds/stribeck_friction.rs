@@ -15,8 +15,8 @@ pub(crate) struct StribeckFriction;
 /// Stribeck speeds to start from, as shares of the typical speed.
 const SHARES: [f64; 3] = [0.05, 0.2, 0.6];
 
-/// Friction at rest over that while sliding, at the most: 1 to 3 is what is measured [Armstrong1994]; more is
-/// another law.
+/// Friction at rest over that while sliding, at the most: 1 to 3 is what is measured; more is
+/// another law \[Armstrong1994\].
 const MOST_OVER_SLIDING: f64 = 10.0;
 
 struct Law {
