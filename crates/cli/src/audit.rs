@@ -1,7 +1,7 @@
 //! What is odd about records before the physics, for people and for programs.
 
 use serde::Serialize;
-use simgap_record::{AuditFinding, AuditTopic};
+use simgap_record::AuditFinding;
 
 use crate::text::named;
 
@@ -37,9 +37,4 @@ pub(crate) fn told(findings: &[AuditFinding]) -> String {
         text.push('\n');
     }
     text
-}
-
-/// Whether the quality of single columns does not say the same.
-pub(crate) fn is_beyond_quality(finding: &AuditFinding) -> bool {
-    !matches!(finding.topic, AuditTopic::Clipping)
 }

@@ -1,12 +1,13 @@
 //! `simgap check`: what records hold, before a model has to make sense of them.
 
 use serde::Serialize;
+use simgap_app::diagnosis::is_beyond_quality;
+use simgap_app::input::{self, Input};
 use simgap_record::{Channel, Defect, QualityFinding, Quantity, Record, UnitKind, quality};
 
 use crate::args::{CheckArgs, Format};
-use crate::audit::{self, is_beyond_quality};
+use crate::audit;
 use crate::error::CliError;
-use crate::input::{self, Input};
 use crate::text::{STRONG, figure, named, shown, styled, table};
 use crate::{say, say_plain};
 
@@ -22,11 +23,11 @@ pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {
     let mut records = Vec::new();
     let mut read = Vec::new();
     for path in &args.records {
-        let Input { record, notes } = input::table(path, &args.reading)?;
+        let Input { record, notes, .. } = input::table(path, &args.reading.options())?;
         records.push(Checked::new(path.display().to_string(), &record, notes));
         read.push(record);
     }
-    let read: Vec<&Record> = read.iter().collect();
+    let read: Vec<&Record> = read.iter().map(|record| &**record).collect();
     let mut findings = match &model {
         Some(model) => simgap_diagnose::audit::audit(model, &read)?,
         None => simgap_record::audit(&read),
@@ -47,7 +48,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {
             text.push_str(&audit::told(&findings));
             say(&text)?;
         }
-        Format::Json => say_plain(&crate::json(&Answer {
+        Format::Json => say_plain(&simgap_app::json(&Answer {
             schema: SCHEMA,
             records,
             differences,

@@ -1,26 +1,22 @@
 //! `simgap compare`: a measured trace and one of an outside simulator, without a model file.
 
-use std::path::Path;
-
+use simgap_app::comparison::{FILES, Question, pairs, write};
+use simgap_app::folder::{Folder, not_an_input};
+use simgap_app::{input, json};
 use simgap_diagnose::Status;
-use simgap_diagnose::compare::{Agreement, CompareRequest, Compared, Comparison, compare};
+use simgap_diagnose::compare::{Agreement, Compared, Comparison};
 use simgap_report::lines::answer_lines;
-use simgap_report::page::{ReportContext, report_html};
 
 use crate::args::{CompareArgs, Format};
 use crate::error::CliError;
-use crate::folder::{Folder, not_an_input};
-use crate::manifest::Results;
 use crate::progress::Steps;
 use crate::text::{STRONG, figure, named, shown, styled};
-use crate::{input, json, say, say_plain};
+use crate::{say, say_plain};
 
 /// Where the text of a named line begins.
 const INDENT: usize = 14;
 /// Entries of a list that is told in one line.
 const FEW: usize = 3;
-/// Files of a result.
-const FILES: [&str; 3] = ["comparison.json", "comparison.html", "compared.csv"];
 
 pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
     if let Some(out) = &args.out {
@@ -31,27 +27,23 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
         Folder::attempt(out, &[], &files)?;
     }
     let pairs = pairs(&args.pair)?;
-    let measured = input::table(&args.measured, &args.reading)?;
+    let measured = input::table(&args.measured, &args.reading.options())?;
     let simulated = input::simulated(&args.simulated)?;
-    let request = CompareRequest {
-        measured: &measured.record,
-        simulated: &simulated.record,
+    let question = Question {
+        measured: &measured,
+        simulated: &simulated,
         pairs: &pairs,
         inputs: &args.input,
         align_start: args.align_start,
     };
-    let mut compared = {
+    let compared = {
         let steps = Steps::new();
-        compare(&request, &|step| steps.show(step))?
+        question.answer(&|step| steps.show(step))?
     };
-    for note in measured.notes.into_iter().chain(simulated.notes) {
-        compared.diagnosis.notes.push(note.clone());
-        compared.comparison.notes.push(note);
-    }
-    let text = json(&compared.comparison)?;
-    if let Some(out) = &args.out {
-        write(&compared, &text, out)?;
-    }
+    let text = match &args.out {
+        Some(out) => write(&compared, out)?,
+        None => json(&compared.comparison)?,
+    };
     match args.format {
         Format::Json => say_plain(&text)?,
         Format::Human => {
@@ -64,55 +56,6 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
         }
     }
     Ok(())
-}
-
-/// `measured=simulated`, as given.
-fn pairs(given: &[String]) -> Result<Vec<(String, String)>, CliError> {
-    given
-        .iter()
-        .map(|pair| match pair.split_once('=') {
-            Some((measured, simulated)) if !measured.is_empty() && !simulated.is_empty() => {
-                Ok((measured.to_string(), simulated.to_string()))
-            }
-            _ => Err(CliError::Pair {
-                found: pair.clone(),
-            }),
-        })
-        .collect()
-}
-
-/// Everything is made before the first file is written.
-fn write(compared: &Compared, json: &str, out: &Path) -> Result<(), CliError> {
-    let comparison = &compared.comparison;
-    let context = ReportContext {
-        program_version: env!("CARGO_PKG_VERSION").to_string(),
-        model_file: comparison.simulated.clone(),
-        train_records: vec![comparison.measured.clone()],
-        check_records: vec![],
-        seed: 0,
-        command_line: String::new(),
-    };
-    let series = std::slice::from_ref(&compared.series);
-    let page = report_html(&compared.diagnosis, series, &context)?;
-    let mut headers = vec!["t [s]".to_string()];
-    let mut columns: Vec<&[f64]> = vec![&compared.series.time_s];
-    for (channel, unit) in compared.series.channels.iter().zip(&compared.units) {
-        for (name, values) in [
-            ("measured", &channel.measured),
-            ("simulated", &channel.nominal),
-            ("corrected", &channel.corrected),
-        ] {
-            headers.push(format!("{} {name} [{unit}]", channel.channel));
-            columns.push(values);
-        }
-    }
-    let folder = Folder::make(out, &[], &FILES.map(|name| out.join(name)))?;
-    let [data, html, csv] = FILES.map(Path::new);
-    let mut results = Results::new(out, "compare");
-    results.add_csv(csv, &headers, &columns)?;
-    results.add(html, &page)?;
-    results.add(data, json)?;
-    results.finish(folder)
 }
 
 /// What a person is told.

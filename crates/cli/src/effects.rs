@@ -1,19 +1,16 @@
 //! `simgap effects`: the catalogue, from its own entries.
 
-use serde::Serialize;
-use simgap_effects::{Effect, Family, Parameter, catalogue, find};
+use simgap_app::effects::{Catalogue, confused, known};
+use simgap_app::json;
+use simgap_effects::{Effect, Family, Parameter, catalogue};
 
 use crate::args::{EffectsArgs, Format};
 use crate::error::CliError;
 use crate::text::{FAINT, STRONG, named, styled, table};
 use crate::{say, say_plain};
 
-/// The schema of `--format json`.
-const SCHEMA: &str = "simgap-effects/1";
 /// Where the text of a named line begins.
 const INDENT: usize = 17;
-/// Kinds that are offered for one that is not known.
-const OFFERED: usize = 3;
 
 pub(crate) fn run(args: &EffectsArgs) -> Result<(), CliError> {
     let entries: Vec<&dyn Effect> = match &args.kind {
@@ -22,9 +19,7 @@ pub(crate) fn run(args: &EffectsArgs) -> Result<(), CliError> {
     };
     match (args.format, &args.kind) {
         (Format::Json, _) => {
-            let effects = entries.iter().map(|effect| entry(*effect)).collect();
-            let schema = SCHEMA;
-            say_plain(&crate::json(&Catalogue { schema, effects })?)?;
+            say_plain(&json(&Catalogue::of(&entries))?)?;
         }
         (Format::Human, Some(_)) => {
             entries
@@ -34,33 +29,6 @@ pub(crate) fn run(args: &EffectsArgs) -> Result<(), CliError> {
         (Format::Human, None) => say(&list())?,
     }
     Ok(())
-}
-
-/// The entry of a kind, or the kinds that look like it.
-pub(crate) fn known(option: &'static str, kind: &str) -> Result<&'static dyn Effect, CliError> {
-    find(kind).ok_or_else(|| unknown(option, kind))
-}
-
-fn unknown(option: &'static str, kind: &str) -> CliError {
-    let kinds = catalogue().iter().map(|effect| effect.kind());
-    let mut near: Vec<(f64, &str)> = kinds.map(|known| (likeness(kind, known), known)).collect();
-    near.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let near: Vec<&str> = near.iter().take(OFFERED).map(|(_, kind)| *kind).collect();
-    CliError::UnknownKind {
-        option,
-        found: kind.to_string(),
-        near: near.join(", "),
-    }
-}
-
-/// How much a word looks like a kind, as a whole or like one of its words.
-fn likeness(word: &str, kind: &str) -> f64 {
-    let word = word.to_lowercase().replace(['-', ' '], "_");
-    let parts = kind.split('_').chain([kind]);
-    let whole = strsim::normalized_damerau_levenshtein(&word, kind);
-    parts
-        .map(|part| 0.9 * strsim::normalized_damerau_levenshtein(&word, part))
-        .fold(whole, f64::max)
 }
 
 /// A line for each kind.
@@ -133,24 +101,6 @@ fn explained(effect: &dyn Effect) -> String {
     text
 }
 
-/// What it is taken for, and what is taken for it.
-fn confused(effect: &dyn Effect) -> Vec<(&'static str, &'static str)> {
-    let mut found = effect.confused_with().to_vec();
-    for other in catalogue() {
-        let back = other.confused_with().iter();
-        let mine = back.filter(|(kind, _)| *kind == effect.kind());
-        found.extend(mine.map(|(_, because)| (other.kind(), *because)));
-    }
-    // What both say is said once, in the entry's own words.
-    let mut kept: Vec<(&str, &str)> = vec![];
-    for pair in found {
-        if kept.iter().all(|(kind, _)| *kind != pair.0) {
-            kept.push(pair);
-        }
-    }
-    kept
-}
-
 fn parameter_row(parameter: &Parameter) -> Vec<String> {
     let neutral = match parameter.neutral {
         None => "shape only".to_string(),
@@ -194,76 +144,4 @@ fn example(effect: &dyn Effect) -> String {
         text.push_str(&format!("    {name:widest$} = ...    # {unit}\n"));
     }
     text
-}
-
-#[derive(Serialize)]
-struct Catalogue {
-    schema: &'static str,
-    effects: Vec<Entry>,
-}
-
-#[derive(Serialize)]
-struct Entry {
-    kind: &'static str,
-    family: &'static str,
-    summary: &'static str,
-    equation: &'static str,
-    site: &'static str,
-    place: &'static str,
-    parameters: Vec<ParameterEntry>,
-    experiment: &'static str,
-    confused_with: Vec<Confusion>,
-    contains: &'static [&'static str],
-    reference: Option<&'static str>,
-}
-
-/// Bounds are `null` where there is none, `no_effect_at` where a parameter only shapes the effect
-/// or is a limit that is never reached.
-#[derive(Serialize)]
-struct ParameterEntry {
-    name: &'static str,
-    unit: &'static str,
-    lower: Option<f64>,
-    upper: Option<f64>,
-    no_effect_at: Option<f64>,
-    per_record: bool,
-}
-
-#[derive(Serialize)]
-struct Confusion {
-    kind: &'static str,
-    because: &'static str,
-}
-
-fn entry(effect: &dyn Effect) -> Entry {
-    let finite = |value: f64| value.is_finite().then_some(value);
-    let parameters = effect.parameters().iter().map(|p| ParameterEntry {
-        name: p.name,
-        unit: p.unit,
-        lower: finite(p.lower),
-        upper: finite(p.upper),
-        no_effect_at: p.neutral.and_then(finite),
-        per_record: p.per_record,
-    });
-    let confused = confused(effect).into_iter();
-    Entry {
-        kind: effect.kind(),
-        family: match effect.family() {
-            Family::NominalParameter => "nominal_parameter",
-            Family::Force => "force",
-            Family::Dynamics => "dynamics",
-            Family::Measurement => "measurement",
-        },
-        summary: effect.summary(),
-        equation: effect.equation(),
-        site: effect.site().words(),
-        place: effect.site().place(),
-        parameters: parameters.collect(),
-        experiment: effect.experiment(),
-        confused_with: confused
-            .map(|(kind, because)| Confusion { kind, because })
-            .collect(),
-        contains: effect.contains(),
-        reference: effect.reference(),
-    }
 }

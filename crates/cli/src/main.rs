@@ -10,15 +10,11 @@ mod demo;
 mod diagnose;
 mod effects;
 mod error;
-mod folder;
 mod init;
-mod input;
-mod manifest;
 mod modes;
 mod pointer;
 mod progress;
 mod record_args;
-mod repeated;
 mod sensitivity;
 mod shell;
 mod simulate;
@@ -125,12 +121,4 @@ fn written(result: std::io::Result<()>) -> Result<(), CliError> {
         }
         _ => Ok(()),
     }
-}
-
-/// The text of `--format json`.
-pub(crate) fn json(value: &impl serde::Serialize) -> Result<String, CliError> {
-    let text = serde_json::to_string_pretty(value).map_err(|error| CliError::Json {
-        found: error.to_string(),
-    })?;
-    Ok(text + "\n")
 }

@@ -1,7 +1,7 @@
 //! Arguments about records, the same for every command that reads them.
 
 use clap::Args;
-use simgap_record::{ChannelMap, MapFault, Mend, ReadOptions};
+use simgap_app::input::RecordOptions;
 
 /// How the columns of records are called, and what is done about their faults.
 #[derive(Args, Clone, Default)]
@@ -22,34 +22,12 @@ pub(crate) struct RecordArgs {
 }
 
 impl RecordArgs {
-    /// The map.
-    pub(crate) fn map(&self) -> Result<ChannelMap, MapFault> {
-        ChannelMap::parse(&self.map)
-    }
-
-    /// What to read, with the names, the map and the mending that were asked for.
-    pub(crate) fn applied_to(&self, options: ReadOptions) -> Result<ReadOptions, MapFault> {
-        let options = match &self.columns {
-            Some(columns) => options.with_columns(columns)?,
-            None => options,
-        };
-        Ok(options.with_map(self.map()?).with_mend(self.mend()))
-    }
-
-    /// The arguments again, each with its value, for a command that is to repeat this one.
-    pub(crate) fn words(&self) -> impl Iterator<Item = (&'static str, Option<String>)> {
-        let map = self.map.iter().map(|entry| ("--map", Some(entry.clone())));
-        let columns = self.columns.clone().map(|names| ("--columns", Some(names)));
-        map.chain(columns)
-            .chain(self.mend.then_some(("--mend", None)))
-    }
-
-    /// When faults are made good.
-    pub(crate) fn mend(&self) -> Mend {
-        if self.mend {
-            Mend::Always
-        } else {
-            Mend::Foreign
+    /// The same for whoever reads.
+    pub(crate) fn options(&self) -> RecordOptions {
+        RecordOptions {
+            map: self.map.clone(),
+            columns: self.columns.clone(),
+            mend: self.mend,
         }
     }
 }

@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use serde::Serialize;
+use simgap_app::modes::{At, Complex, operating_point, points};
+use simgap_app::{input, json};
 use simgap_model::{Model, Parameter, PoleSensitivity};
 use simgap_report::chart::{Bar, BarChart, Role};
 
 use crate::args::{Format, SensitivityArgs};
 use crate::error::CliError;
-use crate::modes::{At, Complex, ended, operating_point, points, prepare, write};
+use crate::modes::{ended, prepare, write};
 use crate::text::{STRONG, figure, shown, styled, table};
-use crate::{input, json, say, say_plain};
+use crate::{say, say_plain};
 
 /// The schema of `--format json`.
 const SCHEMA: &str = "simgap-sensitivity/1";

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use clap::CommandFactory as _;
 use clap::builder::PossibleValuesParser;
+use simgap_app::folder::Folder;
 use simgap_effects::catalogue;
 use simgap_record::Batch;
 
 use crate::args::{Cli, CompletionsArgs, ManArgs};
 use crate::error::CliError;
-use crate::folder::Folder;
 use crate::say_plain;
 
 /// Name of the program.

@@ -1,5 +1,6 @@
 //! Text for a terminal: lines of a bearable length, tables, figures, colours.
 
+pub(crate) use simgap_app::text::shown;
 use simgap_report::lines::wrap;
 
 /// Longest line, characters.
@@ -61,26 +62,6 @@ pub(crate) fn table(out: &mut String, head: &[&str], rows: &[Vec<String>], right
     }
 }
 
-/// Words as a shell takes them.
-pub(crate) fn command(words: &[String]) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./+=:,@%".contains(c);
-    let quoted = |word: &String| {
-        if !word.is_empty() && word.chars().all(plain) {
-            word.clone()
-        } else {
-            format!("'{}'", word.replace('\'', "'\\''"))
-        }
-    };
-    words.iter().map(quoted).collect::<Vec<_>>().join(" ")
-}
-
-/// Text from a file as a terminal may see it: nothing in it is obeyed.
-pub(crate) fn shown(text: &str) -> String {
-    text.chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect()
-}
-
 /// A number with four digits that matter, without a string of zeros.
 pub(crate) fn figure(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -107,12 +88,6 @@ mod tests {
             told,
             ["0", "1", "-0.1", "0.6667", "12350", "3.333e-10", "8e9"]
         );
-    }
-
-    #[test]
-    fn verify_a_shell_takes_the_words_of_a_command() {
-        let words = ["y=Pos", "y=Pos [mm]", "it's", ""].map(str::to_owned);
-        assert_eq!(command(&words), r"y=Pos 'y=Pos [mm]' 'it'\''s' ''");
     }
 
     #[test]

@@ -311,6 +311,20 @@ fn regress_records_checked_against_a_model() {
     let of_topic = |topic: &str| found.iter().find(|f| f["topic"] == topic).unwrap();
     assert_eq!(of_topic("sign")["record"], "turned.csv");
     assert_eq!(of_topic("identical")["record"], "A.csv");
+    let still = record(800).lines().fold(String::new(), |mut text, line| {
+        match line.rsplit_once(',') {
+            Some((rest, y)) if y.parse::<f64>().is_ok() => writeln!(text, "{rest},0.0031"),
+            _ => writeln!(text, "{line}"),
+        }
+        .unwrap();
+        text
+    });
+    bench.write("still.csv", still);
+    let told = bench.done(&["check", "still.csv", "--model", "model.toml"]);
+    assert!(
+        told.contains("'y' stands still: is the sensor connected?"),
+        "{told}"
+    );
     bench.write("bad.toml", "");
     let line = bench.refused(&["check", "A.csv", "--model", "bad.toml"]);
     assert!(line.starts_with("bad.toml: "), "{line}");

@@ -43,6 +43,8 @@ const SHIFTED: f64 = 0.93;
 const NEXT_BEST: f64 = 0.85;
 /// Longest shift that is sought, share of the record.
 const LONGEST_SHIFT: f64 = 0.05;
+/// A channel that moves by less than this share of its mean stands still.
+const STILL: f64 = 1e-12;
 /// Fewest samples, lags and standard errors by which noise is known to be white.
 const FEWEST_OF_NOISE: usize = 256;
 const LAGS_OF_NOISE: usize = 8;
@@ -164,6 +166,12 @@ impl Pair<'_> {
         let whole = Relation::of(&predicted, &measured);
         if !is_driven {
             let text = format!("nothing in the model drives '{channel}'");
+            return vec![(AuditTopic::Unmoved, text)];
+        }
+        // Rounding of the mean is all that a value that stands still leaves.
+        let mean_size = mean(self.measured).abs();
+        if rms(&measured) <= STILL * mean_size || rms(&measured) == 0.0 {
+            let text = format!("'{channel}' stands still: is the sensor connected?");
             return vec![(AuditTopic::Unmoved, text)];
         }
         if is_white(self.measured) && whole.squared < RELATED * RELATED {

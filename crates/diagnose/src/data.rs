@@ -1,5 +1,7 @@
 //! Which samples are learnt from, which are held back.
 
+use std::borrow::Borrow;
+
 use simgap_model::Model;
 use simgap_record::Record;
 use simgap_simulate::{Run, output_unit};
@@ -27,14 +29,14 @@ pub(crate) struct Data {
     pub(crate) notes: Vec<String>,
 }
 
-pub(crate) fn divide(
+pub(crate) fn divide<R: Borrow<Record>>(
     model: &Model,
-    train: &[Record],
-    check: &[Record],
+    train: &[R],
+    check: &[R],
 ) -> Result<Data, DiagnoseError> {
-    if train.is_empty() {
+    let Some(first) = train.first() else {
         return Err(DiagnoseError::NoRecord);
-    }
+    };
     let run = |record: &Record, part: &'static str| -> Result<Run, DiagnoseError> {
         let run = Run::with_outputs(model, record)?;
         for (output, measured) in model.outputs.iter().zip(&run.measured) {
@@ -56,11 +58,11 @@ pub(crate) fn divide(
         output_units: model
             .outputs
             .iter()
-            .map(|o| output_unit(o, &train[0]))
+            .map(|o| output_unit(o, first.borrow()))
             .collect(),
         notes: vec![],
     };
-    for record in train {
+    for record in train.iter().map(Borrow::borrow) {
         let left = if check.is_empty() {
             record.len() - held_back(record)
         } else {
@@ -87,7 +89,7 @@ pub(crate) fn divide(
             data.train.push(run(record, "")?);
         }
     }
-    for record in check {
+    for record in check.iter().map(Borrow::borrow) {
         enough(record, record.len(), FEWEST_HELD_BACK, "judge by")?;
         data.check.push(run(record, "")?);
         data.check_times.push(record.time_s().to_vec());

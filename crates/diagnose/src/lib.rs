@@ -4,11 +4,11 @@
 //! corrected model and the predictions. It never sees what the cause is: records and model only.
 //!
 //! ```text
-//! records -> runs -> nominal prediction -> search over small sets of effects
-//!                                              |  score, fit, evidence
-//!                             verdict <- rivals, held-back data
-//!                                              |
-//!                         gap on the check records, where it lies
+//! training records -> nominal prediction -> noise model -> search over small sets of effects
+//!                                                              |  fit, log marginal likelihood
+//!                             status <- another cause? <- posterior over the sets
+//!                                |
+//! check records -> gap, where it lies, whether the answer is complete or refuted
 //! ```
 //!
 //! ```
@@ -81,3 +81,4 @@ pub use diagnosis::*;
 pub use error::DiagnoseError;
 pub use pipeline::{Outcome, Progress, Request, diagnose};
 pub use sets::{FittedEffect, FittedSet};
+pub use simgap_estimate::Cancel;

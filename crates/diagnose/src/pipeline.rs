@@ -6,8 +6,10 @@
 //!
 //! No stage calls an earlier one. The check records come in after everything has been decided and fitted.
 
+use std::borrow::Borrow;
+
 use simgap_effects::{Placed, catalogue};
-use simgap_estimate::{Fit, FitOptions, Problem, Start, fit, fit_initial_states};
+use simgap_estimate::{Cancel, Fit, FitOptions, Problem, Start, fit, fit_initial_states};
 use simgap_inference::noise_model::whitening;
 use simgap_inference::{
     Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, is_nominal, recalibrate,
@@ -26,30 +28,33 @@ use crate::outcome::{corrected_model, series};
 use crate::sets::{FittedSet, fitted_sets};
 use crate::{DiagnoseError, Status, describe, locate};
 
-/// What is asked.
-pub struct Request<'a> {
+/// What is asked. Records are owned, borrowed or shared (`R`).
+pub struct Request<'a, R = Record> {
     /// The nominal model.
     pub model: &'a Model,
     /// Records to learn from.
-    pub train: &'a [Record],
+    pub train: &'a [R],
     /// Records to judge by; empty to hold back the last part of each training record.
-    pub check: &'a [Record],
+    pub check: &'a [R],
     /// Kinds to take out of the catalogue.
     pub withheld: &'a [String],
     /// Whether the search is to end; asked between its stages.
     pub is_spent: &'a (dyn Fn() -> bool + Sync),
+    /// Ends the whole work without an answer.
+    pub cancel: Cancel,
 }
 
-impl<'a> Request<'a> {
+impl<'a, R: Borrow<Record>> Request<'a, R> {
     /// A request without withheld kinds and without a limit.
     #[must_use]
-    pub fn new(model: &'a Model, train: &'a [Record], check: &'a [Record]) -> Request<'a> {
+    pub fn new(model: &'a Model, train: &'a [R], check: &'a [R]) -> Request<'a, R> {
         Request {
             model,
             train,
             check,
             withheld: &[],
             is_spent: &|| false,
+            cancel: Cancel::default(),
         }
     }
 }
@@ -103,8 +108,11 @@ impl Prepared {
 /// of threads of the pool it runs in.
 ///
 /// # Errors
-/// [`DiagnoseError`] when the records do not fit the model or the model cannot be simulated.
-pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome, DiagnoseError> {
+/// [`DiagnoseError`] when the records do not fit the model, the model cannot be simulated, or the work was cancelled.
+pub fn diagnose<R: Borrow<Record>>(
+    request: &Request<'_, R>,
+    progress: Progress<'_>,
+) -> Result<Outcome, DiagnoseError> {
     known_kinds(request.withheld)?;
     let data = divide(request.model, request.train, request.check)?;
     progress("nominal model");
@@ -137,11 +145,14 @@ pub fn diagnose(request: &Request<'_>, progress: Progress<'_>) -> Result<Outcome
     let noise = noise.with_colour_of(&least.unwrap_or(&base).fit);
     let mut pool = search.refit(&pool, &noise);
     search.refine(&mut pool)?;
+    // Sets that failed are left out of the pool, those of cancelled work too.
+    request.cancel.check()?;
 
     progress("posterior");
     let decision = decide(&search, pool, &start, &prepared)?;
     let stopped_early = (request.is_spent)();
 
+    request.cancel.check()?;
     progress("final fit");
     // Intervals count the samples that what the answer leaves holds.
     let noise = match decision.posterior.best() {
@@ -185,8 +196,13 @@ fn known_kinds(withheld: &[String]) -> Result<(), DiagnoseError> {
     }
 }
 
-fn prepare(request: &Request<'_>, data: &Data) -> Result<Prepared, DiagnoseError> {
+fn prepare<R: Borrow<Record>>(
+    request: &Request<'_, R>,
+    data: &Data,
+) -> Result<Prepared, DiagnoseError> {
     let mut train = Problem::new(request.model, data.train.clone())?;
+    train.leaves_out_ends = true;
+    train.cancel = request.cancel.clone();
     let options = FitOptions::white(request.model.outputs.len());
     let mut nominal = fit_initial_states(&train, &[], &options)?;
     if let Some(filters) = whitening(&train, &data.check, &nominal, &options)? {
@@ -212,7 +228,8 @@ fn prepare(request: &Request<'_>, data: &Data) -> Result<Prepared, DiagnoseError
         ..options
     };
     let recalibrated = recalibrate(&train, &start, &loose)?;
-    let excerpt = train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy));
+    let mut excerpt = train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy));
+    excerpt.leaves_out_ends = true;
     Ok(Prepared {
         train,
         excerpt,
@@ -223,8 +240,8 @@ fn prepare(request: &Request<'_>, data: &Data) -> Result<Prepared, DiagnoseError
 }
 
 #[allow(clippy::too_many_arguments)]
-fn finish(
-    request: &Request<'_>,
+fn finish<R: Borrow<Record>>(
+    request: &Request<'_, R>,
     data: &Data,
     prepared: &Prepared,
     decision: Decision,
@@ -281,9 +298,10 @@ fn finish(
     })
 }
 
-fn quality_notes(request: &Request<'_>, data: &Data) -> Vec<String> {
+fn quality_notes<R: Borrow<Record>>(request: &Request<'_, R>, data: &Data) -> Vec<String> {
     let mut notes = data.notes.clone();
     for record in request.train.iter().chain(request.check) {
+        let record = record.borrow();
         let findings = simgap_record::quality(record).into_iter();
         for finding in findings.filter(worth_a_note) {
             notes.push(format!("{}: {finding}", record.name()));

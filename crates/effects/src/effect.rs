@@ -320,6 +320,12 @@ pub trait Effect: Sync + Send {
         true
     }
 
+    /// Whether it is one of the terms that the loss of a machine is usually made of: a force against the velocity, in
+    /// proportion to its only value. Such terms stand for each other, and may be found only together.
+    fn is_loss_term(&self) -> bool {
+        false
+    }
+
     /// Two values that make the law another one where they agree: an asymmetry whose two sides are one.
     fn coincidence(&self) -> Option<[usize; 2]> {
         None

@@ -43,5 +43,5 @@ pub use free::{VELOCITY_NODES, find_law, free_laws};
 pub use line::Line;
 pub use place::{Placed, same_place, sites};
 pub use prior::{EXACT, LocalPrior, Prior, SLIPPED, SLIPS, Slip, slip_of, usual_prior};
-pub use signal_map::{Sampled, SignalMap};
+pub use signal_map::{Sampled, SignalMap, most_beyond};
 pub use wave::Wave;

@@ -35,6 +35,9 @@ pub struct SiteScale {
     /// Strongest lines of what the nominal model leaves (channel sites: of this channel), Hz; zero
     /// where there are fewer.
     pub lines_hz: [f64; LINES],
+    /// Strongest lines of what is left of a channel times its signal, and times the rate of its signal, Hz: a carrier of either.
+    /// Zero where there are fewer, and at every other site.
+    pub carriers_hz: [f64; LINES],
     /// Strongest lines of the motion, Hz.
     pub motion_hz: [f64; LINES],
 }
@@ -72,6 +75,7 @@ impl SiteScale {
             has_spring: true,
             mass_kg: 1.0,
             lines_hz: [0.0; LINES],
+            carriers_hz: [0.0; LINES],
             motion_hz: [0.0; LINES],
         }
     }

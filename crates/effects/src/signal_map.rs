@@ -8,6 +8,12 @@ const MOST_BEYOND: f64 = 0.01;
 /// Samples that a short stretch may leave out all the same, up to a tenth of it.
 const FEW: usize = 8;
 
+/// Samples at either end of a record that a map may leave out as beyond its reach.
+#[must_use]
+pub fn most_beyond(len: usize) -> usize {
+    ((MOST_BEYOND * len as f64) as usize).max(FEW.min(len / 10))
+}
+
 /// A uniformly sampled signal.
 #[derive(Debug, Clone, Copy)]
 pub struct Sampled<'a> {
@@ -125,7 +131,7 @@ impl Sampled<'_> {
     /// The samples whose positions are on the record, see [`SignalMap::reach`].
     fn on_record(&self, position: impl Fn(usize) -> f64) -> Range<usize> {
         let len = self.values.len();
-        let most = ((MOST_BEYOND * len as f64) as usize).max(FEW.min(len / 10));
+        let most = most_beyond(len);
         let is_off = |i: &usize| !(0.0..=(len as f64 - 1.0)).contains(&position(*i));
         let start = (0..most).rev().find(is_off).map_or(0, |i| i + 1);
         let end = (len - most..len).find(is_off).unwrap_or(len);

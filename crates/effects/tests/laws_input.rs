@@ -248,4 +248,11 @@ fn verify_carriers_start_from_sums_and_differences() {
         let found = starts.iter().filter(|start| (start[1] - 9.0).abs() < 1e-12);
         assert_eq!(found.count(), 1, "{kind}");
     }
+    // Of a motion of many frequencies, the line of what is left times the motion.
+    let sizes = SiteScale {
+        lines_hz: [0.0; 4],
+        carriers_hz: [9.0, 0.0, 0.0, 0.0],
+        ..scale()
+    };
+    assert_eq!(effect("gain_ripple").starts(&sizes)[0][1], 9.0);
 }

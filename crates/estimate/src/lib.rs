@@ -66,6 +66,7 @@
 //! ```
 
 mod base;
+mod cancel;
 mod curvature;
 mod drift;
 mod fit;
@@ -84,6 +85,7 @@ mod spread;
 mod whitening;
 
 pub use base::{Base, linearise_at};
+pub use cancel::Cancel;
 pub use curvature::{Coordinate, Curvature, Owner};
 pub use fit::{Fit, Interval, fit};
 pub use initial::{fit_initial_states, fit_initial_states_from, simulator_at};

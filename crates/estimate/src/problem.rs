@@ -6,7 +6,7 @@ use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue
 use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, Node, OutputKind, PRESSURE_UNIT_PA};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
-use crate::{Candidate, EstimateError, Whitening};
+use crate::{Cancel, Candidate, EstimateError, Whitening};
 
 /// A nominal model and the runs it is compared with.
 pub struct Problem {
@@ -22,6 +22,11 @@ pub struct Problem {
     pub whitening: Whitening,
     /// Typical sizes at places: effects there are fitted under the priors that follow from them, elsewhere without any.
     pub scales: Vec<(Location, SiteScale)>,
+    /// Whether the samples at either end of a run that a late or early channel may leave out
+    /// ([`simgap_effects::most_beyond`]) count for no set, so that sets are compared on the same samples; not so at first.
+    pub leaves_out_ends: bool,
+    /// Ends the work on it.
+    pub cancel: Cancel,
 }
 
 /// How a fit counts what it leaves, and when it stops.
@@ -85,10 +90,12 @@ impl Problem {
             substeps,
             whitening: Whitening::default(),
             scales: vec![],
+            leaves_out_ends: false,
+            cancel: Cancel::default(),
         })
     }
 
-    /// The same model with other runs, the same steps and filters.
+    /// The same model with other runs, the same steps and filters; every sample counts.
     #[must_use]
     pub fn with_runs(&self, runs: Vec<Run>) -> Problem {
         Problem {
@@ -98,6 +105,8 @@ impl Problem {
             substeps: self.substeps,
             whitening: self.whitening.clone(),
             scales: self.scales.clone(),
+            leaves_out_ends: false,
+            cancel: self.cancel.clone(),
         }
     }
 
@@ -106,6 +115,7 @@ impl Problem {
     pub fn unfiltered(&self) -> Problem {
         Problem {
             whitening: Whitening::default(),
+            leaves_out_ends: self.leaves_out_ends,
             ..self.with_runs(self.runs.clone())
         }
     }
@@ -130,8 +140,9 @@ impl Problem {
     /// The nominal model with effects on top of those it has, as they are in one of the runs.
     ///
     /// # Errors
-    /// [`EstimateError`] when a place is not in the model.
+    /// [`EstimateError`] when a place is not in the model, or the work was cancelled.
     pub fn simulator(&self, effects: &[Placed], run: usize) -> Result<Simulator, EstimateError> {
+        self.cancel.check()?;
         let all = self.given.iter().chain(effects);
         let all: Vec<Placed> = all.map(|placed| placed.in_record(run)).collect();
         Simulator::new(&self.model, &all, self.substeps)

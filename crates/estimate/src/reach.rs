@@ -2,11 +2,12 @@
 //!
 //! A channel that comes late or early shows, at an end of the record, motion from outside of it, which no
 //! simulation of the record holds. There a hypothesis neither gains nor loses: its discrepancy counts as
-//! none, and its mean square is over the other samples.
+//! none, and its mean square is over the other samples. Sets that are compared with each other leave out the same
+//! samples ([`Problem::leaves_out_ends`]): a set that may leave out a few does not gain by what the others have to explain there.
 
 use std::ops::Range;
 
-use simgap_effects::{Action, Placed, Sampled};
+use simgap_effects::{Action, Placed, Sampled, most_beyond};
 use simgap_model::Location;
 
 use crate::Problem;
@@ -91,6 +92,15 @@ fn of_run(problem: &Problem, effects: &[Placed], number: usize) -> Vec<Range<usi
                 late..early.max(late)
             })
     };
+    let ends = match problem.leaves_out_ends {
+        true => most_beyond(run.len),
+        false => 0,
+    };
+    let of_channel = |channel: Channel<'_>| {
+        let reached = of_channel(channel);
+        let start = reached.start.max(ends);
+        start..reached.end.min(run.len - ends).max(start)
+    };
     outputs.enumerate().map(of_channel).collect()
 }
 
@@ -145,6 +155,17 @@ mod tests {
         assert_eq!(reach(&both), 3..796);
         // No more than a hundredth of a record is left out.
         assert_eq!(reach(&[shift("sensor_delay", 1.5)]), 8..800);
+    }
+
+    #[test]
+    fn sets_that_are_compared_leave_out_the_same_samples() {
+        let problem = Problem {
+            leaves_out_ends: true,
+            ..problem()
+        };
+        for effects in [vec![], vec![shift("sensor_delay", 0.025)]] {
+            assert_eq!(Reach::of(&problem, &effects).ranges[0][0], 8..792);
+        }
     }
 
     #[test]

@@ -71,6 +71,7 @@ impl Problem {
             has_spring: stiffness > 0.0,
             mass_kg: mass_at(&self.model, at).unwrap_or(1.0),
             lines_hz: self.lines_left(fit, at),
+            carriers_hz: self.carriers_left(fit, at),
             motion_hz: lines(&[moved.unwrap_or_default()], step),
             ..SiteScale::plain(
                 displacement_m,
@@ -91,9 +92,7 @@ impl Problem {
     /// all channels elsewhere.
     #[must_use]
     pub fn lines_left(&self, fit: &Fit, at: &Location) -> [f64; LINES] {
-        let runs = self.runs.iter().zip(&fit.discrepancy);
-        let longest = runs.max_by(|(a, _), (b, _)| a.duration_s().total_cmp(&b.duration_s()));
-        let Some((run, left)) = longest else {
+        let Some((run, left)) = self.longest(fit) else {
             return [0.0; LINES];
         };
         let signals: Vec<&[f64]> = match self.channel_at(at) {
@@ -101,6 +100,32 @@ impl Problem {
             None => left.iter().map(Vec::as_slice).collect(),
         };
         lines(&signals, run.time_step_s)
+    }
+
+    /// Strongest lines of what a fit leaves of a channel in the longest run, times the signal and times its rate, Hz: a carrier
+    /// c(t) of the signal leaves c(t) y, and c(t) y · y has a line at the frequency of c whatever the motion is.
+    #[must_use]
+    pub fn carriers_left(&self, fit: &Fit, at: &Location) -> [f64; LINES] {
+        let (Some((run, left)), Some(i)) = (self.longest(fit), self.channel_at(at)) else {
+            return [0.0; LINES];
+        };
+        let Some(signal) = run.measured.get(i).and_then(Option::as_ref) else {
+            return [0.0; LINES];
+        };
+        let rate = |k: usize| signal[(k + 1).min(signal.len() - 1)] - signal[k.saturating_sub(1)];
+        let of_signal: Vec<f64> = left[i].iter().zip(signal).map(|(e, y)| e * y).collect();
+        let of_rate: Vec<f64> = left[i]
+            .iter()
+            .enumerate()
+            .map(|(k, e)| e * rate(k))
+            .collect();
+        lines(&[&of_signal, &of_rate], run.time_step_s)
+    }
+
+    /// The longest run, and what a fit leaves of each of its channels.
+    fn longest<'a>(&'a self, fit: &'a Fit) -> Option<(&'a Run, &'a Vec<Vec<f64>>)> {
+        let runs = self.runs.iter().zip(&fit.discrepancy);
+        runs.max_by(|(a, _), (b, _)| a.duration_s().total_cmp(&b.duration_s()))
     }
 
     fn channel_at(&self, at: &Location) -> Option<usize> {

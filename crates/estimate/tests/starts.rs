@@ -275,3 +275,20 @@ fn verify_a_damped_stop_is_found_through_all_its_blows() {
         assert!((gap / values[0] - 1.0).abs() < 1e-4, "{gap} from {off}");
     }
 }
+
+/// A motion of many frequencies times a carrier leaves no line; what is left times the motion has one at the carrier.
+#[test]
+fn verify_a_carrier_of_a_broad_motion_is_found() {
+    const CARRIER_HZ: f64 = 17.0;
+    let model = model(OSCILLATOR);
+    let mut normal = Normal(7);
+    let force: Vec<f64> = (0..4000).map(|_| 30.0 * normal.draw()).collect();
+    let at = Location::Channel("y".into());
+    let ripple = placed("gain_ripple", at.clone(), &[0.02, CARRIER_HZ, 0.4]);
+    let run = noisy(&truth(&model, &[ripple], force, 0.005, &[0.0; 2]), 1e-5, 3);
+    let problem = problem(&model, run);
+    let fit = fit_initial_states(&problem, &[], &FitOptions::white(1)).unwrap();
+    let is_carrier = |line: &f64| (line - CARRIER_HZ).abs() < 1.0 / 20.0;
+    assert!(!problem.lines_left(&fit, &at).iter().any(is_carrier));
+    assert!(is_carrier(&problem.carriers_left(&fit, &at)[0]));
+}

@@ -15,16 +15,16 @@ use std::collections::btree_map::Entry;
 use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
-use crate::candidate_model::{CandidateModel, is_bent, name, rank, remove};
+use crate::candidate_model::{CandidateModel, is_bent, is_nominal, name, rank, remove};
 use crate::noise_model::NOISE_KNOWN;
 use crate::other::RELEVANT_SHARE;
 use crate::search::Search;
 
 /// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
-/// name, nor one that moves every output by less than this share of its motion, rms;
+/// name, nor one, but for a wrong nominal parameter, that moves every output by less than this share of its motion, rms;
 const OF_MOTION: f64 = 0.003;
-/// nor one without which no more is left than no set is expected to explain, or that explains less than this share of what is
-/// left above the noise, mean square.
+/// nor one without which no more is left than no set is expected to explain; nor one beside others that explains less than this
+/// share of what is left above the noise, mean square.
 const OF_REST: f64 = 0.5;
 /// Log odds within which effects cannot be told apart: one to twenty.
 const INDISTINGUISHABLE: f64 = 3.0;
@@ -157,12 +157,13 @@ impl Relevance {
         let left = without.fit.variance.iter().zip(noise);
         let channels = closed(with, without).zip(left);
         let mut channels = channels.zip(self.gap.iter().zip(moves));
+        let is_first = without.effects().is_empty();
         channels.any(|((closed, (left, (noise, floor))), (gap, moves))| {
             let stands_out = *left > NOISE_KNOWN * floor;
             stands_out
                 && moves
                 && closed > (RELEVANT_SHARE * gap).powi(2)
-                && closed > OF_REST * (left - noise)
+                && (is_first || closed > OF_REST * (left - noise))
         })
     }
 
@@ -204,7 +205,11 @@ impl Relevance {
             (0..set.effects().len()).partition(is_known);
         order.extend(unknown);
         for i in order {
-            let moved = moved(search, set, i)?;
+            // A wrong nominal parameter is told however little it moves: the others bend where it is kept as given.
+            let moved = match is_nominal(&set.effects()[i]) {
+                true => vec![f64::INFINITY; self.motion.len()],
+                false => moved(search, set, i)?,
+            };
             let smaller = match asked.places.get(&set.key_without(i)) {
                 Some(&known) => asked.sets[known].clone(),
                 None => search.fit(&remove(&set.fit.estimate, i, search.nominal))?,

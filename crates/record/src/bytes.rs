@@ -90,7 +90,7 @@ impl<'a> Bytes<'a> {
         Ok(array)
     }
 
-    #[cfg(any(feature = "xlsx", feature = "arrow"))]
+    #[cfg(feature = "xlsx")]
     pub(crate) fn u16(&mut self, what: &'static str) -> Result<u16, FormatFault> {
         self.array(what).map(u16::from_le_bytes)
     }
@@ -207,7 +207,7 @@ pub(crate) fn counted(integers: &[i128]) -> (Vec<f64>, f64) {
     (values, origin as f64)
 }
 
-#[cfg(any(feature = "arrow", feature = "matlab73"))]
+#[cfg(any(feature = "arrow", feature = "matlab73", feature = "parquet"))]
 /// A number of half precision: sign, five bits of exponent, ten of fraction.
 pub(crate) fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };

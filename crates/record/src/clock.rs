@@ -23,7 +23,9 @@ const DAYS: [(f64, f64); 2] = [(36_526.0, 73_051.0), (730_486.0, 767_011.0)];
 /// Longest step of a record of a machine, s, and shortest.
 const LONGEST_S: f64 = 10.0;
 const SHORTEST_S: f64 = 1e-7;
-/// A name for parts of a second is doubted below this step, s.
+/// A name for parts of a second is doubted up to this step, s: seconds under it would be of 10 Hz or
+/// more in ms, and of 500 Hz or more in us.
+const DOUBTED_MS_S: f64 = 1.01e-4;
 const DOUBTED_S: f64 = 2e-6;
 /// From here on time counts from the first stamp, s: three years are no time of a run.
 const COUNTED_FROM_S: f64 = 1e8;
@@ -98,7 +100,12 @@ fn unit_of(
             let because = format!("is named for {symbol}, but begins at {first:e}");
             return Err(open(file, name, because, first, step));
         }
-        if parts && step > 0.0 && unit.to_si(step) < DOUBTED_S {
+        let doubted = if symbol == "ms" {
+            DOUBTED_MS_S
+        } else {
+            DOUBTED_S
+        };
+        if parts && step > 0.0 && unit.to_si(step) < doubted {
             let because = format!("is named for {symbol}, but its step is {}", digits(step));
             return Err(open(file, name, because, first, step));
         }
@@ -147,10 +154,12 @@ fn without_a_word(first: f64, step: f64) -> Result<Option<&'static str>, String>
     if of_calendar && step > 0.0 && step < 1e-3 {
         match (is_round(step), is_round(step * 86_400.0)) {
             (false, true) => return Ok(Some("d")),
+            // No record of a machine has so many samples a second.
+            _ if step < SHORTEST_S => return Ok(Some("d")),
             (true, false) => {}
             _ => {
                 return Err(format!(
-                    "has no unit; it begins at {first}, which may be days of a calendar or seconds,"
+                    "has no unit; it begins at {first}, which may be days of a calendar or seconds"
                 ));
             }
         }

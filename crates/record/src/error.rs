@@ -1,34 +1,11 @@
 //! What can be wrong with a record.
 
-use std::fmt;
 use std::io;
 
 use crate::faults::{FormatFault, MapFault, MendFault, SelectionFault, TextFault};
+pub use crate::place::Place;
+use crate::place::mending;
 use crate::{Format, MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS, Quantity, UNEVEN_FRACTION, UnitKind};
-
-/// Where in a record a value stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    /// Line of a file, counted from 1.
-    Line(u64),
-    /// Row of a record without lines, counted from 0.
-    Row(usize),
-    /// Byte of a file, counted from 0.
-    Byte(u64),
-    /// Names of a record made in memory.
-    Names,
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Place::Line(line) => write!(f, "line {line}"),
-            Place::Row(row) => write!(f, "row {row}"),
-            Place::Byte(byte) => write!(f, "byte {byte}"),
-            Place::Names => f.write_str("names"),
-        }
-    }
-}
 
 /// Why a record cannot be read, made or written. Each message is one line: file, line or column,
 /// what was found, what is needed.
@@ -193,7 +170,9 @@ pub enum RecordError {
         needed: usize,
     },
     /// An empty cell.
-    #[error("{file}: line {line}: column '{column}' is empty, but a number is needed")]
+    #[error(
+        "{file}: line {line}: column '{column}' is empty, but a number is needed; --mend takes it as missing"
+    )]
     MissingCell {
         /// File or record.
         file: String,
@@ -215,7 +194,7 @@ pub enum RecordError {
         found: String,
     },
     /// NaN, an infinity, or a number too large for a double.
-    #[error("{file}: {at}: column '{column}' holds '{found}', but a finite number is needed")]
+    #[error("{file}: {at}: column '{column}' holds '{found}', but a finite number is needed{}", mending(*at, found))]
     NotFinite {
         /// File or record.
         file: String,

@@ -37,7 +37,7 @@ impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Format::Text => "table of text",
-            Format::Mat5 => "MATLAB 5 file",
+            Format::Mat5 => "MATLAB file",
             Format::Hdf5 => "HDF5 or MATLAB 7.3 file",
             Format::Uff => "universal file (UFF)",
             Format::Parquet => "Parquet file",

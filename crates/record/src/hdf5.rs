@@ -4,6 +4,8 @@
 //! class in the attribute `MATLAB_class`, a group for each structure. MATLAB counts the first index
 //! fastest and HDF5 the last, so the sizes stand the other way round.
 
+use std::collections::HashMap;
+
 use hdf5_pure::{AttrValue, DType, Dataset, Group};
 
 use crate::MIN_ROWS;
@@ -11,53 +13,69 @@ use crate::arrays::{Array, Workspace};
 use crate::bytes::counted;
 use crate::faults::FormatFault;
 use crate::foreign::{guarded, one_line};
+use crate::hdf5_newest;
 use crate::hdf5_types::{Form, Member};
+use crate::mat_objects::{self, Reference};
 use crate::note::Note;
 use crate::raw::within_limit;
 
 /// Packed best, a byte stands for a hundred numbers; those nobody wrote take no byte at all.
 const MOST_NUMBERS_PER_BYTE: u64 = 1000;
 /// Groups within groups that are read.
-const DEEPEST: usize = 4;
+pub(crate) const DEEPEST: usize = 4;
 /// Groups and datasets that are looked at: links may run in circles.
 const MOST_OBJECTS: usize = 10_000;
-/// Classes of MATLAB that are stored as numbers and are none.
-const NO_NUMBERS: [&str; 4] = ["char", "cell", "function_handle", "string"];
-
-type Attributes = std::collections::HashMap<String, AttrValue>;
+type Attributes = HashMap<String, AttrValue>;
 
 /// All real numeric arrays of a file of up to two dimensions.
-pub(crate) fn read(bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Workspace, FormatFault> {
-    let (arrays, left_out) = guarded("the file", || {
+pub(crate) fn read(mut bytes: Vec<u8>, notes: &mut Vec<Note>) -> Result<Workspace, FormatFault> {
+    hdf5_newest::as_known(&mut bytes);
+    let is_matlab = bytes.starts_with(b"MATLAB 7.3");
+    let (mut walk, store) = guarded("the file", || {
         let most = MOST_NUMBERS_PER_BYTE.saturating_mul(bytes.len() as u64);
         let file = hdf5_pure::File::from_bytes(bytes).map_err(damaged("the head of the file"))?;
         let mut walk = Walk {
             most,
+            is_matlab,
             ..Walk::default()
         };
         walk.group(&file.root(), "", 0)?;
-        Ok((walk.arrays, walk.left_out))
+        let store = walk.store(&file);
+        Ok((walk, store))
     })?;
-    notes.extend(left_out);
-    Ok(Workspace {
-        arrays,
-        ..Workspace::default()
-    })
+    notes.append(&mut walk.left_out);
+    let mut workspace = Workspace {
+        arrays: walk.arrays,
+        texts: walk.texts,
+    };
+    mat_objects::resolve(&mut workspace, walk.references, store, notes);
+    Ok(workspace)
 }
 
 #[derive(Default)]
-struct Walk {
-    arrays: Vec<Array>,
-    left_out: Vec<Note>,
-    objects: usize,
+pub(crate) struct Walk {
+    pub(crate) arrays: Vec<Array>,
+    pub(crate) texts: HashMap<String, String>,
+    /// Variables that stand for objects of MATLAB.
+    pub(crate) references: Vec<Reference>,
+    pub(crate) left_out: Vec<Note>,
+    pub(crate) objects: usize,
     /// Numbers so far.
-    values: u64,
+    pub(crate) values: u64,
     /// Most that a file of this length can hold.
-    most: u64,
+    pub(crate) most: u64,
+    /// Whether MATLAB wrote the file, and whether these are the cells that hold its objects.
+    pub(crate) is_matlab: bool,
+    pub(crate) is_store: bool,
 }
 
 impl Walk {
-    fn group(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), FormatFault> {
+    pub(crate) fn group(
+        &mut self,
+        group: &Group,
+        path: &str,
+        depth: usize,
+    ) -> Result<(), FormatFault> {
         let what = match path {
             "" => "the list of variables".to_owned(),
             path => format!("group '{path}'"),
@@ -65,7 +83,7 @@ impl Walk {
         for (name, dataset) in group.iter_datasets().map_err(damaged(&what))? {
             self.count()?;
             let path = joined(path, &name);
-            self.dataset(&dataset, &path)?;
+            self.dataset(&dataset, &path, depth)?;
         }
         if depth == DEEPEST {
             return Ok(());
@@ -80,7 +98,7 @@ impl Walk {
         Ok(())
     }
 
-    fn count(&mut self) -> Result<(), FormatFault> {
+    pub(crate) fn count(&mut self) -> Result<(), FormatFault> {
         self.objects += 1;
         if self.objects > MOST_OBJECTS {
             return Err(FormatFault::TooMuch {
@@ -91,23 +109,42 @@ impl Walk {
         Ok(())
     }
 
-    fn dataset(&mut self, dataset: &Dataset, path: &str) -> Result<(), FormatFault> {
+    pub(crate) fn dataset(
+        &mut self,
+        dataset: &Dataset,
+        path: &str,
+        depth: usize,
+    ) -> Result<(), FormatFault> {
+        match self.read(dataset, path, depth) {
+            // What no reader of ours knows is no reason to refuse the rest.
+            Err(FormatFault::Unsupported { found, instead }) => {
+                let because = format!("it is {found}; {instead}");
+                self.leave_out(path, &because, MIN_ROWS as u64);
+                Ok(())
+            }
+            other => other,
+        }
+    }
+
+    fn read(&mut self, dataset: &Dataset, path: &str, depth: usize) -> Result<(), FormatFault> {
         let what = format!("dataset '{path}'");
         let damaged = damaged(&what);
         let kind = dataset.dtype().map_err(&damaged)?;
         let form = if is_number(&kind) {
             Form::Plain
         } else if let Ok(datatype) = dataset.datatype() {
-            Form::of(&datatype)
+            Form::of(&datatype, self.is_store)
         } else {
             Form::Unread("its type is not known")
         };
         let attributes = dataset.attrs().map_err(&damaged)?;
         let class = text(&attributes, "MATLAB_class");
-        if attributes.contains_key("MATLAB_empty")
-            || class.is_some_and(|class| NO_NUMBERS.contains(&class))
-        {
+        if attributes.contains_key("MATLAB_empty") {
             return Ok(());
+        }
+        let is_object = attributes.contains_key("MATLAB_object_decode");
+        if is_object || self.is_of_matlab(class, &kind) {
+            return self.of_matlab(dataset, path, depth, class.filter(|_| !is_object));
         }
         let (outer, inner) = match dataset.shape().map_err(&damaged)?[..] {
             [] => (1, 1),
@@ -184,7 +221,7 @@ impl Walk {
     }
 
     /// Tells of something as long as a record that is not read.
-    fn leave_out(&mut self, path: &str, because: &str, count: u64) {
+    pub(crate) fn leave_out(&mut self, path: &str, because: &str, count: u64) {
         if count >= MIN_ROWS as u64 {
             self.left_out.push(Note::LeftOut {
                 column: path.to_owned(),
@@ -236,26 +273,25 @@ fn is_number(kind: &DType) -> bool {
     )
 }
 
-fn text<'a>(attributes: &'a Attributes, name: &str) -> Option<&'a str> {
+pub(crate) fn text<'a>(attributes: &'a Attributes, name: &str) -> Option<&'a str> {
     attributes.get(name).and_then(AttrValue::as_str)
 }
 
-fn joined(path: &str, name: &str) -> String {
+pub(crate) fn joined(path: &str, name: &str) -> String {
     if path.is_empty() {
         return name.to_owned();
     }
     format!("{path}.{name}")
 }
 
-fn damaged<E: std::fmt::Display>(what: &str) -> impl Fn(E) -> FormatFault {
+pub(crate) fn damaged<E: std::fmt::Display>(what: &str) -> impl Fn(E) -> FormatFault {
     move |error| {
         let text = error.to_string();
         let reason = text.strip_prefix("HDF5 format error: ").unwrap_or(&text);
-        let newest = ["data layout version: 5", "version 2 B-tree chunk index"];
-        if newest.iter().any(|form| reason.contains(form)) {
+        if reason.contains("version 2 B-tree chunk index") {
             return FormatFault::Unsupported {
-                found: format!("{} in a form that came with HDF5 2.0", one_line(what)),
-                instead: "write the file for an older version, with libver=('earliest', 'v114') in h5py",
+                found: format!("{} with more than one unlimited size", one_line(what)),
+                instead: "write it with one at most (maxshape), or for an older version, with libver='earliest' in h5py",
             };
         }
         FormatFault::Damaged {

@@ -39,7 +39,8 @@ enum Kind {
 }
 
 impl Form {
-    pub(crate) fn of(datatype: &Datatype) -> Form {
+    /// Of complex numbers the real part is a member of a record where it is asked for.
+    pub(crate) fn of(datatype: &Datatype, with_real_parts: bool) -> Form {
         if let Datatype::Compound { size, members } = datatype {
             let member = |member: &hdf5_pure::CompoundMember| Member {
                 name: member.name.clone(),
@@ -50,7 +51,7 @@ impl Form {
                 && members
                     .iter()
                     .all(|m| matches!(m.name.as_str(), "r" | "i" | "real" | "imag"));
-            if complex {
+            if complex && !with_real_parts {
                 return Form::Unread("its values are complex");
             }
             return Form::Record {

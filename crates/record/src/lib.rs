@@ -28,6 +28,10 @@
 
 mod arrays;
 #[cfg(any(feature = "arrow", feature = "parquet"))]
+#[cfg_attr(
+    not(feature = "arrow"),
+    expect(dead_code, reason = "Parquet needs the schema alone")
+)]
 mod arrow;
 mod base;
 mod batch;
@@ -50,15 +54,29 @@ mod fill;
     feature = "parquet",
     feature = "xlsx"
 ))]
+#[cfg_attr(
+    not(any(
+        feature = "matlab73",
+        feature = "mdf",
+        feature = "parquet",
+        feature = "xlsx"
+    )),
+    allow(dead_code, reason = "Arrow is read without another crate's reader")
+)]
 mod foreign;
 mod format;
 #[cfg(feature = "matlab73")]
 mod hdf5;
 #[cfg(feature = "matlab73")]
+mod hdf5_cells;
+#[cfg(feature = "matlab73")]
+mod hdf5_newest;
+#[cfg(feature = "matlab73")]
 mod hdf5_types;
 mod logger;
 mod map;
 mod mat5;
+mod mat_objects;
 #[cfg(feature = "mdf")]
 mod mdf;
 mod mend;
@@ -66,6 +84,7 @@ mod mended;
 mod note;
 mod open;
 mod overload;
+mod place;
 mod quality;
 mod raw;
 mod record;

@@ -99,7 +99,7 @@ fn channel_values(file: &Mf4File, channel: &Channel) -> Result<Vec<f64>, String>
     let values = signal
         .values()
         .map_err(|error| one_line(&error.to_string()))?;
-    let mut values = numbers(&values)?;
+    let mut values = numbers(values)?;
     if let Some(valid) = signal.validity() {
         for (value, _) in values.iter_mut().zip(valid).filter(|(_, valid)| !valid) {
             *value = f64::NAN;
@@ -108,8 +108,10 @@ fn channel_values(file: &Mf4File, channel: &Channel) -> Result<Vec<f64>, String>
     Ok(values)
 }
 
-fn numbers(values: &SignalValues) -> Result<Vec<f64>, String> {
+fn numbers(values: SignalValues) -> Result<Vec<f64>, String> {
     match values {
+        // Not copied: a long record takes its room once.
+        SignalValues::F64(values) => Ok(values),
         SignalValues::Str(_) => Err("it holds text".to_owned()),
         SignalValues::Complex { .. } => Err("its values are complex".to_owned()),
         values if values.kind().is_numeric() => Ok(values.to_f64()),
@@ -138,7 +140,7 @@ fn version_3(bytes: Vec<u8>) -> Result<Vec<Group>, FormatFault> {
                 let values = file
                     .channel_physical(g, c, k)
                     .map_err(|error| one_line(&error.to_string()))
-                    .and_then(|values| numbers(&values));
+                    .and_then(numbers);
                 if channel.is_time() {
                     let stamps = values.map_err(|_| "the time of its group cannot be read");
                     read.time = Some(stamps.map(|stamps| in_seconds(stamps, &channel.unit)));

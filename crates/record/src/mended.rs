@@ -75,6 +75,15 @@ impl Mended {
         }
     }
 
+    /// Of some of the channels, by their place.
+    pub(crate) fn of_channels(&self, kept: &[usize]) -> Mended {
+        let filled = |k: &usize| self.filled.get(*k).cloned().unwrap_or_default();
+        Mended {
+            filled: kept.iter().map(filled).collect(),
+            is_resampled: self.is_resampled,
+        }
+    }
+
     /// Of a range of rows.
     pub(crate) fn slice(&self, range: Range<usize>) -> Mended {
         let cut = |filled: &Vec<bool>| filled.get(range.clone()).unwrap_or_default().to_vec();

@@ -5,12 +5,12 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::channel::{Channel, Conversion};
-use crate::error::{Place, RecordError, name_list};
-use crate::faults::MendFault;
+use crate::error::{Place, RecordError, name_list, shortened};
+use crate::faults::{MendFault, SelectionFault};
 use crate::mended::Mended;
 use crate::overload::is_mark;
 use crate::time_base::{TimeFault, check_even};
-use crate::{Quantity, Unit};
+use crate::{Quantity, Unit, UnitKind};
 
 /// Fewest rows a record may have: with less, nothing of a motion can be told.
 pub const MIN_ROWS: usize = 8;
@@ -116,6 +116,38 @@ impl Record {
             time_step_s,
             ..record
         })
+    }
+
+    /// A record from stamps in a unit of time, such as `ms`, and channels. The conversion to seconds is
+    /// among [`Record::conversions_to`].
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Selection`] for a unit of something else, and the errors of [`Record::new`].
+    pub fn with_time_unit(
+        name: impl Into<String>,
+        (time_name, time_unit): (&str, &str),
+        time: Vec<f64>,
+        channels: Vec<Channel>,
+    ) -> Result<Record, RecordError> {
+        let name = name.into();
+        let unit = Unit::parse(time_unit);
+        if unit.kind() != UnitKind::Time {
+            return Err(RecordError::Selection {
+                file: name,
+                fault: SelectionFault::TimeUnit {
+                    name: shortened(time_name),
+                    unit: shortened(time_unit),
+                },
+            });
+        }
+        let origin = Origin {
+            file: &name,
+            time_name,
+            header: Place::Names,
+            row: &Place::Row,
+        };
+        Record::from_file(name.clone(), &origin, &unit, time, channels)
     }
 
     /// A record from a file, with line numbers in its messages. Stamps in `time_unit`.
@@ -249,6 +281,24 @@ impl Record {
             .cloned()
             .chain(of_channels)
             .collect()
+    }
+
+    /// The same record with those channels alone whose name is asked for.
+    #[must_use]
+    pub fn with_channels(&self, is_kept: impl Fn(&str) -> bool) -> Record {
+        let all = self.channels.iter().enumerate();
+        let kept: Vec<usize> = all
+            .filter(|(_, channel)| is_kept(&channel.name))
+            .map(|(index, _)| index)
+            .collect();
+        Record {
+            name: self.name.clone(),
+            time_s: self.time_s.clone(),
+            time_step_s: self.time_step_s,
+            time_conversion: self.time_conversion.clone(),
+            channels: kept.iter().map(|&k| self.channels[k].clone()).collect(),
+            mended: self.mended.of_channels(&kept),
+        }
     }
 
     /// The rows of a range as a record of the same name and time step.

@@ -192,7 +192,7 @@ impl Picker<'_> {
                 continue;
             }
             let must = must || self.options.map.entry(channel).is_some();
-            match self.find(self.options.map.column_of(channel), must)? {
+            match self.find(self.options.map.column_of(channel), must, notes)? {
                 Some(column) => picks.push(self.pick(column, channel, notes)),
                 None => continue,
             }
@@ -202,7 +202,7 @@ impl Picker<'_> {
 
     fn all(&self, notes: &mut Vec<Note>) -> Result<Vec<Pick>, RecordError> {
         for entry in self.options.map.channels() {
-            self.find(&entry.column, true)?;
+            self.find(&entry.column, true, notes)?;
         }
         let mut picks: Vec<Pick> = Vec::new();
         for (column, heading) in self.headings.iter().enumerate() {
@@ -236,7 +236,7 @@ impl Picker<'_> {
     }
 
     /// The only column of that name.
-    fn find(&self, name: &str, must: bool) -> Result<Option<usize>, RecordError> {
+    fn find(&self, name: &str, must: bool, notes: &[Note]) -> Result<Option<usize>, RecordError> {
         let mut found = (0..self.headings.len()).filter(|&k| self.headings[k].name == name);
         match (found.next(), found.next()) {
             (Some(first), Some(second)) => Err(RecordError::Selection {
@@ -248,7 +248,7 @@ impl Picker<'_> {
                 },
             }),
             (Some(column), None) => Ok(Some(column)),
-            (None, _) if must => Err(unknown(self.file, name, self.headings)),
+            (None, _) if must => Err(unknown(self.file, name, self.headings, notes)),
             (None, _) => Ok(None),
         }
     }
@@ -273,16 +273,31 @@ impl Picker<'_> {
     }
 }
 
-fn unknown(file: &str, wanted: &str, headings: &[Heading]) -> RecordError {
+fn unknown(file: &str, wanted: &str, headings: &[Heading], notes: &[Note]) -> RecordError {
     let names = || headings.iter().map(|heading| heading.name.as_str());
+    let near = left_out(wanted, notes).unwrap_or_else(|| near_names(wanted, names()));
     RecordError::Selection {
         file: file.to_owned(),
         fault: SelectionFault::Unknown {
             wanted: wanted.to_owned(),
-            near: near_names(wanted, names()),
+            near,
             has: name_list(names()),
         },
     }
+}
+
+/// Why a column that the file has was not read.
+fn left_out(wanted: &str, notes: &[Note]) -> Option<String> {
+    let is_it = |column: &str| {
+        let own = column.rsplit_once('.').map_or(column, |(_, own)| own);
+        column == wanted || own == wanted
+    };
+    notes.iter().find_map(|note| match note {
+        Note::LeftOut { column, because } if is_it(column) => {
+            Some(format!("; '{}' is left out: {because}", shortened(column)))
+        }
+        _ => None,
+    })
 }
 
 /// The column of time: the mapped one, one named like time, or a first one in a unit of time.
@@ -295,7 +310,7 @@ pub(crate) fn time_column(
         let found = headings
             .iter()
             .position(|heading| heading.name == entry.column);
-        let column = found.ok_or_else(|| unknown(file, &entry.column, headings))?;
+        let column = found.ok_or_else(|| unknown(file, &entry.column, headings, &[]))?;
         return Ok(Some(column));
     }
     let named = |is: &dyn Fn(&str) -> bool| headings.iter().position(|h| is(&h.name));

@@ -132,11 +132,11 @@ fn regress_messages_about_cells() {
     long text: A.csv: line 6: column 'y' holds 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx…', but a number is needed
     quoted decimal comma: A.csv: line 6: column 'y' holds '4,5', but a number is needed
     bare decimal comma: A.csv: line 6: 3 cells found, but the header has 2
-    missing: A.csv: line 6: column 'y' is empty, but a number is needed
+    missing: A.csv: line 6: column 'y' is empty, but a number is needed; --mend takes it as missing
     too few: A.csv: line 6: 1 cells found, but the header has 2
     too many: A.csv: line 6: 3 cells found, but the header has 2
     shifted by a remark: A.csv: line 6: 3 cells found, but the header has 2
-    NaN: A.csv: line 6: column 'y' holds 'NaN', but a finite number is needed
+    NaN: A.csv: line 6: column 'y' holds 'NaN', but a finite number is needed; --mend takes it as missing
     infinite: A.csv: line 6: column 'y' holds '-inf', but a finite number is needed
     too large: A.csv: line 6: column 'y' holds '1e999', but a finite number is needed
     time is text: A.csv: line 6: column 't' holds 'now', but a number is needed

@@ -25,11 +25,21 @@ const FILES: &[&str] = &[
     "variants/simulink.mat",
     "variants/others.mat",
     "variants/epoch-ns.mat",
+    "variants/table-v7.mat",
+    "variants/timetable-v7.mat",
+    "variants/timetable-v6.mat",
+    "variants/each.mat",
+    "variants/milliseconds.tdms",
+    "variants/late.uff",
+    "instruments/lvm-no-x.lvm",
+    "instruments/siglent-sds.csv",
+    "instruments/keysight-daq.csv",
     "variants/savetxt-header.txt",
     "instruments/lvm-one-x.lvm",
     "instruments/lvm-each-x.lvm",
     "instruments/F0000CH1.CSV",
     "instruments/rigol-ds1000z.csv",
+    "instruments/rigol-mso5000.csv",
     "instruments/gw-instek-fast.csv",
     "instruments/twincat-scope.csv",
     "instruments/campbell-toa5.dat",
@@ -51,8 +61,16 @@ const FILES: &[&str] = &[
     "variants/version-3.mdf",
     #[cfg(feature = "parquet")]
     "variants/polars-duration.parquet",
+    #[cfg(feature = "parquet")]
+    "variants/half-decimal.parquet",
     #[cfg(feature = "matlab73")]
     "variants/latest.h5",
+    #[cfg(feature = "matlab73")]
+    "variants/extents.h5",
+    #[cfg(feature = "matlab73")]
+    "variants/timetable-v73.mat",
+    #[cfg(feature = "matlab73")]
+    "variants/signals-v73.mat",
     #[cfg(feature = "matlab73")]
     "variants/records.h5",
     #[cfg(feature = "parquet")]
@@ -233,6 +251,32 @@ fn verify_a_bomb_does_not_go_off() {
     // 40 elements of 64 MiB are 2.5 GiB.
     let error = parse_file("bomb.mat", &bytes, &ReadOptions::all()).unwrap_err();
     insta::assert_snapshot!(error.to_string());
+}
+
+/// Billions of structures without fields take no time.
+#[test]
+fn verify_an_array_of_nothing_is_passed_over() {
+    let words = |words: &[u32]| -> Vec<u8> { words.iter().flat_map(|w| w.to_le_bytes()).collect() };
+    let (flags, sizes) = ([6, 8, 2, 0], [5, 8, 1 << 18, 1 << 18]);
+    // A name of one letter, a length of 32 for names of fields, none of them, and one element more.
+    let rest = [1 << 16 | 1, u32::from(b'x'), 4 << 16 | 5, 32, 1, 0, 14, 0];
+    let body = words(&[&flags[..], &sizes, &rest].concat());
+    let mut bytes = bytes_of("vectors.mat")[..128].to_vec();
+    bytes.extend(words(&[14, u32::try_from(body.len()).unwrap()]));
+    bytes.extend(body);
+    assert!(!survives("nothing.mat", &bytes));
+}
+
+/// Names that a file gives to columns stay in one line.
+#[test]
+fn verify_names_of_oscilloscopes_break_no_message() {
+    for header in [
+        "CH1\u{8e}1V,t0 = 0, tInc = 1e-3,\n",
+        "X,CH\u{8e}1,Start,Increment,\nSequence,Volt,0,1e-3\n",
+    ] {
+        let text = header.to_owned() + &"x,x,,\n".repeat(9);
+        assert!(!survives("scope.csv", text.as_bytes()));
+    }
 }
 
 /// Memory that this process has had at most, where the system tells it.

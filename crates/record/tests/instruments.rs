@@ -62,12 +62,17 @@ fn val_oscilloscopes() {
     for (name, u, y) in [
         ("tektronix-mso.csv", "CH1", "CH2"),
         ("rigol-ds1000z.csv", "CH1", "CH2"),
+        ("rigol-mso5000.csv", "CH1", "CH2"),
+        ("rohde-rtb.csv", "C1", "C2"),
         ("keysight-infiniivision.csv", "1", "2"),
         ("siglent-sds.csv", "CH1", "CH2"),
         ("picoscope.csv", "Channel A", "Channel B"),
     ] {
         let reading = read(FOLDER, name, &[&format!("u={u}"), &format!("y={y}")]);
         assert_holds(&reading, name, PRINTED);
+        if matches!(name, "rigol-mso5000.csv" | "rohde-rtb.csv") {
+            assert_eq!(reading.record.require("y").unwrap().unit.symbol(), "V");
+        }
     }
     let reading = single("F0000CH1.CSV", &["y=CH1"]);
     assert_holds(&reading, "F0000CH1.CSV", PRINTED);

@@ -85,6 +85,11 @@ fn val_parquet_times() {
             "{told}"
         );
     }
+    let half = Expected {
+        tolerance: motion::HALF,
+        ..WHOLE
+    };
+    holds("half-decimal.parquet", &["u=u", "y=y"], half);
     let refusal = refused(FOLDER, "since-boot.parquet", &options(&["u=u", "y=y"])).to_string();
     assert!(
         refusal.contains("--map \"t=timestamp [us]\" (200 Hz)"),
@@ -181,22 +186,97 @@ fn val_scipy_workspaces() {
     };
     let told = holds("datenum.mat", &units, days);
     assert!(told.contains("read in d, which its name says"), "{told}");
-    let told = holds("days.mat", &units, days);
-    assert!(told.contains("read in d, in which"), "{told}");
+    for name in ["days.mat", "near-days.mat"] {
+        let told = holds(name, &units, days);
+        assert!(told.contains("read in d, in which"), "{told}");
+    }
+    // A structure for each sample.
+    holds("each.mat", &units, WHOLE);
     let told = holds("named.mat", &units, WHOLE);
     assert!(told.contains("'time_ms' read in ms"), "{told}");
+}
+
+/// Tables, timetables with durations and with dates, of a file with sections and of an HDF5 file.
+fn assert_tables(ending: &str) {
+    let units = ["u=u [kN]", "y=y [mm]"];
+    let told = holds(&format!("table-{ending}.mat"), &units, WHOLE);
+    assert!(
+        told.contains("'run.state' left out: it holds no real numbers"),
+        "{told}"
+    );
+    let told = holds(&format!("timetable-{ending}.mat"), &units, WHOLE);
+    assert!(!told.contains("assumed"), "{told}");
+    let by_rate = Expected {
+        stamped_s: 2.0,
+        ..WHOLE
+    };
+    holds(&format!("rate-{ending}.mat"), &units, by_rate);
+    // Milliseconds since 1970 have a digit for 0.2 us.
+    let dated = Expected {
+        stamp_steps: 1e-4,
+        ..WHOLE
+    };
+    holds(&format!("dated-{ending}.mat"), &units, dated);
+}
+
+#[test]
+fn val_mat_io_tables() {
+    assert_tables("v7");
+    holds("timetable-v6.mat", &["u=u [kN]", "y=y [mm]"], WHOLE);
+}
+
+/// What is left out is told where it is asked for.
+#[test]
+fn verify_a_channel_that_is_left_out_is_told_with_its_reason() {
+    let reason = |name: &str, map: &[&str]| refused(FOLDER, name, &options(map)).to_string();
+    assert!(
+        reason("others.mat", &["u=z"]).ends_with(
+            "column 'z' is needed, but the file has 't', 'u', 'y'; 'z' is left out: its values are \
+             complex; save real(x) and imag(x)"
+        ),
+        "{}",
+        reason("others.mat", &["u=z"])
+    );
+    let line = reason("spectrum.tdms", &["u=Weg", "y=Weg"]);
+    assert!(
+        line.contains("'Weg' is left out: its values stand over an axis in [Hz]"),
+        "{line}"
+    );
+}
+
+#[cfg(feature = "matlab73")]
+#[test]
+fn val_mat_io_and_hdf5storage_files() {
+    assert_tables("v73");
+    let reading = read(FOLDER, "signals-v73.mat", &["u=Kraft", "y=Weg"]);
+    assert_holds(&reading, "signals-v73.mat", WHOLE);
+    let unit = |name: &str| {
+        reading
+            .record
+            .require(name)
+            .unwrap()
+            .unit
+            .symbol()
+            .to_owned()
+    };
+    assert_eq!((unit("u").as_str(), unit("y").as_str()), ("kN", "mm"));
+    holds("cells-v73.mat", &["u=log{1} [kN]", "y=log{2} [mm]"], WHOLE);
 }
 
 #[cfg(feature = "matlab73")]
 #[test]
 fn val_h5py_files() {
     let named = ["u=Kraft", "y=Weg"];
-    // What HDF5 2.0 writes for itself alone is refused, with the way out.
-    for name in ["latest.h5", "latest-plain.h5"] {
-        let refusal = refused(FOLDER, name, &options(&named)).to_string();
-        assert!(refusal.contains("libver=('earliest', 'v114')"), "{refusal}");
+    for name in ["latest.h5", "extents.h5", "v114.h5"] {
+        holds(name, &named, WHOLE);
     }
-    holds("v114.h5", &named, WHOLE);
+    let told = holds("latest-plain.h5", &named, WHOLE);
+    assert!(
+        told.contains(
+            "'log.both' left out: it is dataset 'log.both' with more than one unlimited size; write it with one"
+        ),
+        "{told}"
+    );
     let told = holds(
         "half.h5",
         &["u=u [kN]", "y=y [mm]"],
@@ -294,6 +374,14 @@ fn val_numpy_text() {
     for name in ["savetxt-header.txt", "savetxt-commas.txt"] {
         holds(name, &["u=u", "y=y"], printed);
     }
+    holds("pandas-timedelta.csv", &["u=u", "y=y"], printed);
+    // Seconds under the name of milliseconds, 200 Hz.
+    let map = ["u=u", "y=y"];
+    let refusal = refused(FOLDER, "doubted.txt", &options(&map)).to_string();
+    assert!(
+        refusal.contains("'t_ms' is named for ms, but its step is 0.005; say which it is with --map \"t=t_ms [s]\" (200 Hz) or"),
+        "{refusal}"
+    );
     let refusal = refused(FOLDER, "savetxt.txt", &options(&[])).to_string();
     assert!(
         refusal.ends_with("name them with --columns \"t [s],u [N],y [mm]\""),

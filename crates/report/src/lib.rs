@@ -16,6 +16,7 @@
 pub mod chart;
 pub mod lines;
 pub mod page;
+pub mod schematic;
 pub mod summary;
 
 mod bands;

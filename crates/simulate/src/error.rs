@@ -17,4 +17,7 @@ pub enum SimulateError {
     /// An effect of the model file cannot be used.
     #[error(transparent)]
     Effect(#[from] EffectError),
+    /// Whoever asked no longer waits for the result.
+    #[error("cancelled before it was done")]
+    Cancelled,
 }

@@ -5,14 +5,15 @@ mod template;
 
 use std::path::Path;
 
+use simgap_app::folder::{Folder, not_an_input};
+use simgap_app::input::{self, Input};
+use simgap_app::text::command;
 use simgap_model::Model;
 use simgap_record::{Record, write_text_atomic};
 
 use crate::args::InitArgs;
 use crate::error::CliError;
-use crate::folder::{Folder, not_an_input};
-use crate::input::{self, Input};
-use crate::text::{STRONG, command, figure, named, shown, styled, table};
+use crate::text::{STRONG, figure, named, shown, styled, table};
 use crate::{say, say_plain};
 use guess::{Roles, roles};
 
@@ -30,14 +31,14 @@ pub(crate) fn run(args: &InitArgs) -> Result<(), CliError> {
     }
     let read = args.record.as_deref();
     let read = read
-        .map(|path| input::table(path, &args.reading))
+        .map(|path| input::table(path, &args.reading.options()))
         .transpose()?;
     let (record, notes) = match read {
-        Some(Input { record, notes }) => (Some(record), notes),
+        Some(Input { record, notes, .. }) => (Some(record), notes),
         None => (None, vec![]),
     };
-    let roles = roles(args.like, record.as_ref());
-    let text = template::model_file(&roles, record.as_ref());
+    let roles = roles(args.like, record.as_deref());
+    let text = template::model_file(&roles, record.as_deref());
     let path = || args.out.clone().unwrap_or_else(|| "model.toml".into());
     // What is handed out must be a model file, whatever the columns are called.
     Model::from_toml(&text).map_err(|error| CliError::Model {
@@ -54,7 +55,7 @@ pub(crate) fn run(args: &InitArgs) -> Result<(), CliError> {
     let folder = Folder::make(parent, &[], std::slice::from_ref(out))?;
     write_text_atomic(out, &text)?;
     folder.keep();
-    say(&told(args, &roles, record.as_ref(), &notes, out))
+    say(&told(args, &roles, record.as_deref(), &notes, out))
 }
 
 /// What was taken for what, and what to do now.
@@ -110,7 +111,7 @@ fn try_it(args: &InitArgs, model: &Path) -> String {
     let word = |path: &Path| path.display().to_string();
     let mut words = vec!["simgap".into(), "simulate".into(), word(model)];
     words.extend(["--record".into(), word(record)]);
-    for (name, value) in args.reading.words() {
+    for (name, value) in args.reading.options().words() {
         words.push(name.into());
         words.extend(value);
     }

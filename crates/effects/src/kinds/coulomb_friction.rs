@@ -60,6 +60,10 @@ impl Effect for CoulombFriction {
         }]
     }
 
+    fn is_loss_term(&self) -> bool {
+        true
+    }
+
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![0.1 * scale.force_n]]
     }

@@ -128,12 +128,14 @@ impl Effect for EndStop {
         }))
     }
 
-    /// An elastic contact on one side about as soft as the spring of the place is a spring with two slopes.
+    /// A contact softer than the spring of the place stops nothing; an elastic one on one side that is about as soft is a
+    /// spring with two slopes.
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         let [low, high] = scale.displacement_range_m;
         let both_sides = values[0] < high && -values[1] > low;
         let held = values[3] * scale.velocity_m_per_s > ELASTIC * scale.displacement_m;
-        !scale.has_spring || both_sides || held || values[2] >= SOFT * scale.stiffness_n_per_m
+        let over_spring = values[2] / scale.stiffness_n_per_m;
+        !scale.has_spring || over_spring >= SOFT || ((both_sides || held) && over_spring >= 1.0)
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
@@ -175,5 +177,6 @@ mod tests {
         };
         assert!(keeps(20.0 * high, 4e4, 0.0) && !keeps(20.0 * high, 2e4, 0.0));
         assert!(keeps(0.5 * high, 2e4, 0.0) && keeps(20.0 * high, 2e4, 1e-3));
+        assert!(!keeps(0.5 * high, 9e3, 1e-3));
     }
 }

@@ -56,6 +56,10 @@ impl Effect for QuadraticDamping {
         }]
     }
 
+    fn is_loss_term(&self) -> bool {
+        true
+    }
+
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![0.05 * scale.force_n / scale.velocity_m_per_s.powi(2)]]
     }

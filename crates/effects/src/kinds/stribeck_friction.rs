@@ -15,6 +15,10 @@ pub(crate) struct StribeckFriction;
 /// Stribeck speeds to start from, as shares of the typical speed.
 const SHARES: [f64; 3] = [0.05, 0.2, 0.6];
 
+/// Friction at rest over that while sliding, at the most: 1 to 3 is what is measured; more is
+/// another law \[Armstrong1994\].
+const MOST_OVER_SLIDING: f64 = 10.0;
+
 struct Law {
     sliding: f64,
     excess: f64,
@@ -118,6 +122,10 @@ impl Effect for StribeckFriction {
             *value = value.clamp(parameter.lower, parameter.upper);
         }
         values[1] = values[1].max(values[0]);
+    }
+
+    fn has_support(&self, values: &[f64], _: &SiteScale) -> bool {
+        values[1] <= MOST_OVER_SLIDING * values[0]
     }
 
     fn action(&self, values: &[f64]) -> Action {

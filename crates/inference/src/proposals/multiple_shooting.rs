@@ -2,10 +2,15 @@
 //!
 //! Nominal parameters are re-estimated beside the laws, as in [`super::recalibrated`]: over whole records they could not be.
 
-use simgap_effects::Family;
-use simgap_estimate::{Candidate, EstimateError, Fit, FitOptions, Problem, Start, linearise_at};
+use std::collections::BTreeSet;
 
-use crate::candidate_model::{CandidateModel, rank, straight};
+use simgap_effects::{Family, Placed};
+use simgap_estimate::{
+    Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
+};
+use simgap_model::Location;
+
+use crate::candidate_model::{CandidateModel, add, rank, straight};
 use crate::model_space::ModelSpace;
 use crate::search::Search;
 use crate::stretches::{Cut, fit_long};
@@ -13,6 +18,8 @@ use crate::stretches::{Cut, fit_long};
 /// Single laws fitted to stretches, by score, and sets that are fitted to whole records then.
 const FITTED: usize = 12;
 const FINISHED: usize = 6;
+/// Share of its usual size that a term of a loss starts from.
+const SMALL: f64 = 0.1;
 
 impl Search<'_> {
     /// Laws of the machine fitted to stretches of the records, to longer ones, and then to whole records. Best first.
@@ -26,43 +33,72 @@ impl Search<'_> {
             return Ok(vec![]);
         }
         let wide = self.wide_options();
-        let mut begun = cut.begin(self.problem, &straight(base), &self.options)?;
+        let begun = cut.begin(self.problem, &straight(base), &self.options)?;
+        let mut begun = begun.estimate;
         // Parameters that are re-estimated may hide a law at first: in the shortest stretches it is looked for beside those of the
         // model as well.
         let mut found = self.fit_beside(&begun, &cut, &self.options)?.1;
+        let mut losses = self.loss_laws(&begun);
         while !cut.is_whole() {
             let (parameters, mut sets) = self.fit_beside(&begun, &cut, &wide)?;
+            let of_losses = fit_long(&cut.apply(self.problem), &losses, &wide).into_iter();
+            losses = of_losses.map(|fit| cut.of_joined(&fit.estimate)).collect();
             sets.append(&mut found);
-            rank(&mut sets);
+            rank_in_stretches(&mut sets);
             sets.truncate(FINISHED);
-            begun.estimate = cut.of_joined(&parameters.fit.estimate);
+            begun = cut.of_joined(&parameters.fit.estimate);
             let starts = sets.iter().map(|set| cut.of_joined(&set.fit.estimate));
             let starts: Vec<Start> = starts.collect();
             cut = cut.joined();
             let carried = fit_long(&cut.apply(self.problem), &starts, &wide).into_iter();
             found = carried.map(|fit| self.candidate_model(fit)).collect();
         }
+        let whole = fit_long(self.problem, &losses, &wide).into_iter();
+        found.extend(whole.map(|fit| self.candidate_model(fit)));
         let mut sets = self.with_parameters_named(found);
+
         rank(&mut sets);
         Ok(sets)
+    }
+
+    /// The terms of a loss together, at each place that several of them can be at: dry, viscous and quadratic damping stand for
+    /// each other in a stretch of one amplitude, and each alone has the wrong size where the machine has all.
+    fn loss_laws(&self, begun: &Start) -> Vec<Start> {
+        let terms = self.space.candidates.iter();
+        let terms = terms.filter(|(term, _)| term.effect.is_loss_term());
+        let mut laws: Vec<(Location, Start)> = vec![];
+        for (term, scale) in terms {
+            let Some(mut values) = term.effect.starts(scale).into_iter().next() else {
+                continue;
+            };
+            values.iter_mut().for_each(|value| *value *= SMALL);
+            let placed = Placed::new(term.effect, term.at.clone(), values);
+            match laws.iter_mut().find(|(at, _)| *at == term.at) {
+                Some((_, law)) => *law = add(law, placed),
+                None => laws.push((term.at.clone(), add(begun, placed))),
+            }
+        }
+        let laws = laws.into_iter().map(|(_, law)| law);
+        laws.filter(|law| law.effects.len() > 1).collect()
     }
 
     /// Nominal parameters in stretches, and the best laws beside them, alone and together.
     fn fit_beside(
         &self,
-        begun: &Fit,
+        begun: &Start,
         cut: &Cut,
         options: &FitOptions,
     ) -> Result<(CandidateModel, Vec<CandidateModel>), EstimateError> {
         let problem = &cut.apply(self.problem);
+        let parameters = fit(problem, begun, options)?;
         let search = Search {
             problem,
             options: options.clone(),
-            space: self.laws_in(problem, begun)?,
+            space: self.laws_in(problem, &parameters)?,
             nominal: self.nominal,
             budget: self.budget,
         };
-        let parameters = search.fit(&begun.estimate)?;
+        let parameters = search.candidate_model(parameters);
         let linear = linearise_at(problem, &parameters.fit, &search.options)?;
         let mut found = search.extend_at(&parameters, &linear, FITTED)?;
         found.extend(search.fit_joint(&parameters, &linear)?);
@@ -70,11 +106,24 @@ impl Search<'_> {
         Ok((parameters, found))
     }
 
-    /// The laws of the machine, with what is typical of the motion of a fit of other runs of the same records.
+    /// The laws of the machine, with what is typical of the motion that a fit predicts.
     fn laws_in(&self, problem: &Problem, fit: &Fit) -> Result<ModelSpace, EstimateError> {
         let is_beyond =
             |family: Family| !matches!(family, Family::Measurement | Family::NominalParameter);
         let laws = self.space.of_families(is_beyond).candidates;
         ModelSpace::of(problem, fit, laws.into_iter().map(|(law, _)| law))
     }
+}
+
+/// Sorts sets that were fitted to the same stretches by their posterior at the estimate, best first, and keeps the best fit of each.
+/// Their marginal likelihoods do not compare them: with a start of its own for each of many stretches, most of its Occam
+/// factor is how well the starts are known, which speaks against every set that leaves less.
+fn rank_in_stretches(sets: &mut Vec<CandidateModel>) {
+    let at_estimate = |set: &CandidateModel| set.log_prior - set.fit.objective;
+    sets.sort_by(|a, b| {
+        let by_posterior = at_estimate(b).total_cmp(&at_estimate(a));
+        by_posterior.then_with(|| a.key().cmp(&b.key()))
+    });
+    let mut seen = BTreeSet::new();
+    sets.retain(|set| seen.insert(set.key()));
 }

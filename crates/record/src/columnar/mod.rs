@@ -20,7 +20,7 @@ use parquet::file::serialized_reader::SerializedPageReader;
 use parquet::schema::types::ColumnDescPtr;
 
 use self::pages::{Pages, Unpacked, is_known};
-use self::values::{Column, Kind, kind_of};
+use self::values::{Column, Kind, kind_of, number_in};
 use crate::arrow::schema::{self as arrow, Field, fields};
 use crate::error::Place;
 use crate::faults::FormatFault;
@@ -209,7 +209,7 @@ impl Source<'_> {
         let rows = group.num_rows() as usize;
         let pages = self.pages(group, index, descriptor, rows)?;
         let reader = get_column_reader(Arc::clone(descriptor), pages);
-        let levels = descriptor.max_def_level();
+        let (levels, column_kind) = (descriptor.max_def_level(), column.kind);
         let read = match reader {
             ColumnReader::BoolColumnReader(mut reader) => {
                 column.take(&mut reader, rows, levels, |flag| f64::from(u8::from(*flag)))
@@ -229,7 +229,12 @@ impl Source<'_> {
             ColumnReader::Int96ColumnReader(mut reader) => {
                 column.take_counts(&mut reader, rows, levels, |stamp| stamp.to_nanos())
             }
-            _ => Ok(()),
+            ColumnReader::FixedLenByteArrayColumnReader(mut reader) => {
+                column.take(&mut reader, rows, levels, |value| {
+                    number_in(column_kind, value.data())
+                })
+            }
+            ColumnReader::ByteArrayColumnReader(_) => Ok(()),
         };
         if self.unpacked.is_too_much() {
             return Err(FormatFault::TooMuch {

@@ -6,15 +6,21 @@ use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::schema::types::ColumnDescriptor;
 
+use crate::bytes::half;
 use crate::calendar;
 
 /// Rows that are read at once.
 const BATCH: usize = 1 << 16;
 
+/// Bytes of an integer at most.
+const MOST_BYTES: i32 = 16;
+
 /// What a number is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
     Number,
+    /// A number of half precision.
+    Half,
     /// An integer that counts this part of one.
     Decimal(f64),
     Unsigned32,
@@ -39,7 +45,7 @@ pub(crate) fn kind_of(column: &ColumnDescriptor) -> Result<Kind, &'static str> {
     }
     match column.physical_type() {
         Type::BYTE_ARRAY => Err("it holds text"),
-        Type::FIXED_LEN_BYTE_ARRAY => Err("its values are no numbers of 4 or 8 bytes"),
+        Type::FIXED_LEN_BYTE_ARRAY => kind_of_bytes(column),
         Type::INT96 => Ok(Kind::Stamp(Stamps {
             per_second: 1_000_000_000,
             of_day: false,
@@ -47,6 +53,30 @@ pub(crate) fn kind_of(column: &ColumnDescriptor) -> Result<Kind, &'static str> {
         Type::INT32 | Type::INT64 => kind_of_integer(column),
         Type::BOOLEAN | Type::FLOAT | Type::DOUBLE => Ok(Kind::Number),
     }
+}
+
+fn kind_of_bytes(column: &ColumnDescriptor) -> Result<Kind, &'static str> {
+    let length = column.type_length();
+    if column.logical_type_ref() == Some(&LogicalType::Float16) && length == 2 {
+        return Ok(Kind::Half);
+    }
+    if column.converted_type() == ConvertedType::DECIMAL && (1..=MOST_BYTES).contains(&length) {
+        return Ok(Kind::Decimal(10_f64.powi(column.type_scale())));
+    }
+    Err("its values are no numbers")
+}
+
+/// The number in the bytes of a value: half precision, or an integer, the greatest byte first.
+pub(crate) fn number_in(kind: Kind, bytes: &[u8]) -> f64 {
+    let Kind::Decimal(parts) = kind else {
+        let pair = bytes.first_chunk::<2>();
+        return pair.map_or(f64::NAN, |pair| half(u16::from_le_bytes(*pair)));
+    };
+    let is_negative = bytes.first().is_some_and(|byte| byte >> 7 == 1);
+    let start = if is_negative { -1 } else { 0 };
+    let bytes = bytes.iter().take(MOST_BYTES as usize);
+    let count = bytes.fold(start, |count: i128, byte| count << 8 | i128::from(*byte));
+    count as f64 / parts
 }
 
 fn kind_of_integer(column: &ColumnDescriptor) -> Result<Kind, &'static str> {
@@ -109,7 +139,7 @@ impl Column {
         let taken = self.take(reader, rows, levels, |value| {
             let count = count(value);
             match kind {
-                Kind::Number => {
+                Kind::Number | Kind::Half => {
                     // Beyond 2^53 a double loses digits: such integers keep their differences.
                     let far = count.unsigned_abs() > 1 << 53;
                     let from = *first.get_or_insert(if far { count } else { 0 });

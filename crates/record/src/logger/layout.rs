@@ -348,6 +348,12 @@ fn without_brackets(cell: &str) -> &str {
 /// `y [mm]`, and where the unit is known also `y (mm)`, `y / mm` and `y in mm`.
 pub(crate) fn heading(cell: &str) -> Heading {
     let cell = cell.trim();
+    // The time of a Rohde & Schwarz oscilloscope has a unit alone.
+    if let Some(unit) = cell.strip_prefix("in ")
+        && Unit::parse(unit).kind() == UnitKind::Time
+    {
+        return Heading::new(cell, unit);
+    }
     if let Some((name, unit)) = cell
         .strip_suffix(']')
         .and_then(|rest| rest.rsplit_once('['))

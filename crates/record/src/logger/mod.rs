@@ -16,6 +16,7 @@ mod text;
 mod time_of;
 mod twincat;
 
+pub(crate) use cells::is_missing;
 pub(crate) use layout::{heading, starts_by_contract};
 #[cfg(feature = "xlsx")]
 pub(crate) use rows::read_sheet;

@@ -29,6 +29,9 @@ pub(super) fn read(
     if let Some(header) = scopes::rigol_header(&lines) {
         return scopes::rigol(file, text, header, notes).map(Some);
     }
+    if let Some(base) = scopes::rigol_inline(&lines) {
+        return scopes::rigol_later(file, text, base, notes).map(Some);
+    }
     if scopes::is_instek(text, &lines) {
         return scopes::instek(file, text, notes).map(Some);
     }
@@ -60,7 +63,7 @@ pub(super) fn value(
     number(cell, decimal_comma).ok_or_else(|| RecordError::NotANumber {
         file: file.to_owned(),
         line: line as u64 + 1,
-        column: column.to_owned(),
+        column: shortened(column),
         found: shortened(cell),
     })
 }

@@ -145,6 +145,81 @@ pub(super) fn rigol(
     Ok(raw)
 }
 
+/// The line that says `t0 = ..., tInc = ...` behind the names, as the later scopes write it; the
+/// first and the step.
+pub(super) fn rigol_inline(lines: &[&str]) -> Option<(usize, f64, f64)> {
+    lines.iter().take(4).enumerate().find_map(|(at, line)| {
+        let cells = split(line, ',')?;
+        let number = |word: &str| {
+            let mut pairs = cells.iter().filter_map(|cell| cell.split_once('='));
+            let (_, number) = pairs.find(|(key, _)| key.trim().eq_ignore_ascii_case(word))?;
+            number.trim().trim_end_matches('s').parse::<f64>().ok()
+        };
+        let is_timed = cells
+            .iter()
+            .any(|cell| crate::time_names::is_time_name(cell));
+        let step = number("tInc").filter(|step| *step > 0.0 && !is_timed)?;
+        Some((at, number("t0")?, step))
+    })
+}
+
+/// Channels, each named with its unit (`CH1V`), in the first columns.
+pub(super) fn rigol_later(
+    file: &str,
+    text: &str,
+    (header, start_s, step_s): (usize, f64, f64),
+    notes: &mut Vec<Note>,
+) -> Result<Raw, RecordError> {
+    let mut lines = super::text::lines(text).enumerate().skip(header);
+    let line = lines.next().map_or("", |(_, line)| line);
+    let names = split(line, ',').unwrap_or_default();
+    let names: Vec<&str> = names
+        .iter()
+        .map(|name| name.trim())
+        .take_while(|name| !name.contains('='))
+        .collect();
+    let mut columns = vec![Vec::new(); names.len()];
+    for (k, line) in lines {
+        let cells = split(line, ',').unwrap_or_default();
+        if cells.iter().all(|cell| cell.is_empty()) {
+            continue;
+        }
+        for (at, (column, name)) in columns.iter_mut().zip(&names).enumerate() {
+            let cell = cells.get(at).map_or("", |cell| cell.as_ref());
+            column.push(value(file, k, name, cell, false)?);
+            if column.len() > MAX_ROWS {
+                let file = file.to_owned();
+                return Err(RecordError::TooManyRows { file });
+            }
+        }
+    }
+    told(
+        notes,
+        "read as an export of a Rigol oscilloscope, time from t0 and tInc",
+    );
+    let mut raw = Raw::default();
+    let base = raw.base(Base::Even(Uniform {
+        start_s,
+        step_s,
+        rows: columns.first().map_or(0, Vec::len),
+    }));
+    for (values, name) in columns.into_iter().zip(names) {
+        let (name, unit) = ["V", "A", "W"]
+            .into_iter()
+            .filter_map(|unit| Some((name.strip_suffix(unit)?, unit)))
+            .find(|(channel, _)| channel.ends_with(|c: char| c.is_ascii_digit()))
+            .unwrap_or((name, ""));
+        raw.columns.push(RawColumn {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values,
+            base: Some(base),
+            ..RawColumn::default()
+        });
+    }
+    Ok(raw)
+}
+
 /// Settings, one a line, then `Waveform Data` and the values.
 pub(super) fn is_instek(text: &str, lines: &[&str]) -> bool {
     keyed(lines, ',', "Memory Length").is_some() && text.contains("Waveform Data")

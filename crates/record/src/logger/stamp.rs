@@ -27,6 +27,8 @@ pub(crate) struct RawStamp {
 /// Reads a date, a time of day, or a date and a time of day; ISO 8601 and its national variants.
 pub(crate) fn parse_stamp(text: &str) -> Option<RawStamp> {
     let text = text.trim();
+    // A duration as pandas writes it.
+    let text = text.strip_prefix("0 days ").unwrap_or(text);
     if !text.starts_with(|c: char| c.is_ascii_digit()) || text.len() > 48 {
         return None;
     }

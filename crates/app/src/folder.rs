@@ -4,20 +4,23 @@ use std::path::{Path, PathBuf};
 
 use simgap_record::{ensure_replaceable, ensure_writable_dir};
 
-use crate::error::CliError;
+use crate::AppError;
 
 /// A folder that was made to be filled. Dropped without [`Folder::keep`], what was made of it
 /// and is still empty is removed again.
-pub(crate) struct Folder {
+pub struct Folder {
     made: Vec<PathBuf>,
 }
 
 impl Folder {
     /// Makes `out` and the folders `inside` it, writable, with neither a folder nor a
     /// device where one of `files` goes.
-    pub(crate) fn make(out: &Path, inside: &[&str], files: &[PathBuf]) -> Result<Folder, CliError> {
+    ///
+    /// # Errors
+    /// [`AppError`] when it cannot be made or written to.
+    pub fn make(out: &Path, inside: &[&str], files: &[PathBuf]) -> Result<Folder, AppError> {
         if let Some(taken) = files.iter().find(|file| file.is_dir()) {
-            return Err(CliError::FolderInPlace {
+            return Err(AppError::FolderInPlace {
                 path: taken.clone(),
             });
         }
@@ -36,12 +39,15 @@ impl Folder {
     }
 
     /// Whether the folder can be made; nothing stays of the attempt.
-    pub(crate) fn attempt(out: &Path, inside: &[&str], files: &[PathBuf]) -> Result<(), CliError> {
+    ///
+    /// # Errors
+    /// As [`Folder::make`].
+    pub fn attempt(out: &Path, inside: &[&str], files: &[PathBuf]) -> Result<(), AppError> {
         Folder::make(out, inside, files).map(drop)
     }
 
     /// Keeps the folder.
-    pub(crate) fn keep(mut self) {
+    pub fn keep(mut self) {
         self.made.clear();
     }
 }
@@ -55,13 +61,16 @@ impl Drop for Folder {
 }
 
 /// Refuses to write over what is read.
-pub(crate) fn not_an_input(out: &Path, inputs: &[&Path]) -> Result<(), CliError> {
+///
+/// # Errors
+/// [`AppError::OverInput`].
+pub fn not_an_input(out: &Path, inputs: &[&Path]) -> Result<(), AppError> {
     let Ok(target) = out.canonicalize() else {
         return Ok(());
     };
     let same = |input: &&&Path| input.canonicalize().is_ok_and(|path| path == target);
     match inputs.iter().find(same) {
-        Some(_) => Err(CliError::OverInput { path: out.into() }),
+        Some(_) => Err(AppError::OverInput { path: out.into() }),
         None => Ok(()),
     }
 }

@@ -5,6 +5,9 @@
 //! variable is an element of type matrix, which holds further elements: flags, dimensions, name,
 //! values; or it is compressed (zlib) into an element without padding.
 
+mod level4;
+mod objects;
+
 use std::io::Read as _;
 
 use flate2::read::ZlibDecoder;
@@ -12,6 +15,7 @@ use flate2::read::ZlibDecoder;
 use crate::arrays::{Array, Workspace};
 use crate::bytes::{Bytes, Stored};
 use crate::faults::FormatFault;
+use crate::mat_objects::{self, OBJECT, Reference, Store};
 use crate::note::Note;
 use crate::raw::within_limit;
 use crate::{MAX_FILE_BYTES, MIN_ROWS};
@@ -30,17 +34,14 @@ const OBJECT_CLASS: u32 = 3;
 const CHARACTERS: u32 = 4;
 const SPARSE: u32 = 5;
 const OPAQUE: u32 = 17;
-const OBJECT: &str = "it is a table, a timeseries or another object of MATLAB; save its numbers, a table with \
-                      table2struct(x, 'ToScalar', true)";
-
 const COMPRESSED: u32 = 15;
 const MATRIX: u32 = 14;
 
 /// All real two-dimensional numeric arrays of a file.
 pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Workspace, FormatFault> {
-    if is_level_4(bytes) {
+    if level4::is_level_4(bytes) {
         return Err(FormatFault::Unsupported {
-            found: "a MATLAB 4 file, which has numbers without structures,".to_owned(),
+            found: "a file of MATLAB 4".to_owned(),
             instead: "save it with -v7 in MATLAB, or as CSV",
         });
     }
@@ -60,6 +61,9 @@ pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Workspace, For
     let mut file = File {
         notes,
         workspace: Workspace::default(),
+        references: vec![],
+        store: None,
+        is_store: false,
         inflated: 0,
         values: 0,
     };
@@ -67,37 +71,24 @@ pub(crate) fn read(bytes: &[u8], notes: &mut Vec<Note>) -> Result<Workspace, For
     while rest.left() > 0 {
         file.element(&mut rest, "", 0)?;
     }
-    Ok(file.workspace)
-}
-
-/// The head of a variable of level 4: its type, which has four digits at most, its sizes, whether
-/// it is complex, and the length of its name.
-fn is_level_4(bytes: &[u8]) -> bool {
-    let Some(head) = bytes.get(..20) else {
-        return false;
-    };
-    let number = |k: usize, big: bool| {
-        let b = [
-            head[4 * k],
-            head[4 * k + 1],
-            head[4 * k + 2],
-            head[4 * k + 3],
-        ];
-        if big {
-            u32::from_be_bytes(b)
-        } else {
-            u32::from_le_bytes(b)
-        }
-    };
-    [false, true].into_iter().any(|big| {
-        let [kind, rows, columns, complex, name] = [0, 1, 2, 3, 4].map(|k| number(k, big));
-        kind < 5000 && rows < 1 << 28 && columns < 1 << 28 && complex < 2 && (1..64).contains(&name)
-    })
+    let File {
+        mut workspace,
+        references,
+        store,
+        ..
+    } = file;
+    mat_objects::resolve(&mut workspace, references, store, notes);
+    Ok(workspace)
 }
 
 struct File<'n> {
     notes: &'n mut Vec<Note>,
     workspace: Workspace,
+    /// Variables that stand for objects, and what the objects hold.
+    references: Vec<Reference>,
+    store: Option<Store>,
+    /// Whether this is what the objects hold.
+    is_store: bool,
     /// Bytes that came out of compressed elements so far.
     inflated: u64,
     /// Numbers so far.
@@ -182,9 +173,7 @@ impl File<'_> {
         let flags = flags.u32("the flags of a variable")?;
         let (class, complex) = (flags & 0xff, flags & 0x800 != 0);
         if class == OPAQUE {
-            let name = text(element(data, "the name of a variable")?.1)?;
-            self.left_out(joined(path, &name), OBJECT);
-            return Ok(());
+            return self.opaque(data, path);
         }
         let (_, mut dimensions) = element(data, "the dimensions of a variable")?;
         let mut sizes = Vec::new();
@@ -192,9 +181,8 @@ impl File<'_> {
             sizes.push(u64::from(dimensions.u32("the dimensions of a variable")?));
         }
         let own = text(element(data, "the name of a variable")?.1)?;
-        if path.is_empty() && own.is_empty() {
-            // What MATLAB keeps for its objects.
-            return Ok(());
+        if path.is_empty() && own.is_empty() && !self.is_store {
+            return self.objects(data, class);
         }
         let path = joined(path, &own);
         let count = sizes
@@ -224,7 +212,7 @@ impl File<'_> {
                 self.left_out(path, "it is a sparse matrix; save full(x)");
                 Ok(())
             }
-            6..=15 if complex => {
+            6..=15 if complex && !self.is_store => {
                 if long {
                     self.left_out(path, "its values are complex; save real(x) and imag(x)");
                 }
@@ -305,17 +293,26 @@ impl File<'_> {
             let field = names.part(length, WHAT)?;
             fields.push(text(field)?);
         }
+        if fields.is_empty() {
+            // However many such structures there are said to be, they hold nothing.
+            return Ok(());
+        }
+        let mut columns = vec![Vec::new(); fields.len()];
         for index in 0..count {
             if data.left() == 0 {
                 break;
             }
-            for field in &fields {
+            for (field, column) in fields.iter().zip(&mut columns) {
                 let path = match count {
                     1 => format!("{path}.{field}"),
                     _ => format!("{path}({}).{field}", index + 1),
                 };
                 self.element(data, &path, depth + 1)?;
+                self.take_scalar(count, &path, column);
             }
+        }
+        for (field, values) in fields.iter().zip(columns) {
+            self.column_of_scalars(format!("{path}.{field}"), values, count);
         }
         Ok(())
     }

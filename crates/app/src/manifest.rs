@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use simgap_record::Batch;
 
-use crate::error::CliError;
+use crate::AppError;
 use crate::folder::Folder;
 
 /// The file in the folder.
@@ -36,7 +36,7 @@ struct Written {
 
 /// A folder that is being filled with a result. Nothing in it changes before [`Results::finish`],
 /// which replaces all files together.
-pub(crate) struct Results<'a> {
+pub struct Results<'a> {
     out: &'a Path,
     command: &'static str,
     batch: Batch,
@@ -44,7 +44,9 @@ pub(crate) struct Results<'a> {
 }
 
 impl<'a> Results<'a> {
-    pub(crate) fn new(out: &'a Path, command: &'static str) -> Results<'a> {
+    /// A folder to be filled by a command, whose name the list of files keeps.
+    #[must_use]
+    pub fn new(out: &'a Path, command: &'static str) -> Results<'a> {
         Results {
             out,
             command,
@@ -54,19 +56,25 @@ impl<'a> Results<'a> {
     }
 
     /// Adds a file, by its path in the folder.
-    pub(crate) fn add(&mut self, file: &Path, text: &str) -> Result<(), CliError> {
+    ///
+    /// # Errors
+    /// [`AppError::Record`] when it cannot be written there.
+    pub fn add(&mut self, file: &Path, text: &str) -> Result<(), AppError> {
         self.batch.add(&self.out.join(file), text)?;
         self.written.push(Written::of(file, text.as_bytes()));
         Ok(())
     }
 
     /// Adds columns as CSV.
-    pub(crate) fn add_csv(
+    ///
+    /// # Errors
+    /// [`AppError::Record`] when they cannot be written there.
+    pub fn add_csv(
         &mut self,
         file: &Path,
         headers: &[String],
         columns: &[&[f64]],
-    ) -> Result<(), CliError> {
+    ) -> Result<(), AppError> {
         let path = self.out.join(file);
         let text = self.batch.add_csv(&path, headers, columns)?;
         self.written.push(Written::of(file, text.as_bytes()));
@@ -75,7 +83,10 @@ impl<'a> Results<'a> {
 
     /// Puts the files in their places, and takes away those of the command's earlier run that are
     /// not among them and are still as it wrote them.
-    pub(crate) fn finish(self, folder: Folder) -> Result<(), CliError> {
+    ///
+    /// # Errors
+    /// [`AppError`] when a file cannot be put in its place; none is replaced then.
+    pub fn finish(self, folder: Folder) -> Result<(), AppError> {
         // Dropped before the folder, which can be removed only then.
         let Results {
             out,

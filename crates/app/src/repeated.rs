@@ -5,35 +5,36 @@ use std::path::{Path, PathBuf};
 use simgap_model::Model;
 use simgap_record::{Record, found_within};
 
-use crate::error::CliError;
+use crate::AppError;
+use crate::input::Input;
 
 /// Refuses a training record that repeats another one, and a check record that holds the samples of
 /// a training record or is a part of it: figures on data that was fitted to say nothing.
-pub(crate) fn refuse(
-    model: &Model,
-    (train_paths, train): (&[PathBuf], &[Record]),
-    (check_paths, check): (&[PathBuf], &[Record]),
-) -> Result<(), CliError> {
+pub(crate) fn refuse(model: &Model, train: &[Input], check: &[Input]) -> Result<(), AppError> {
+    let named = |input| {
+        let Input { path, record, .. }: &Input = input;
+        (path, &**record)
+    };
     let inputs = model.inputs.iter().map(|input| input.channel.as_str());
     let outputs = model.outputs.iter().map(|output| output.channel.as_str());
     // The outputs first: they tell most records apart at the first sample.
     let channels: Vec<&str> = outputs.chain(inputs).collect();
-    let learnt: Vec<(&PathBuf, &Record)> = train_paths.iter().zip(train).collect();
+    let learnt: Vec<(&PathBuf, &Record)> = train.iter().map(named).collect();
     for (k, (path, record)) in learnt.iter().enumerate() {
         let same = |other: &Record| {
             other.len() == record.len() && found_within(record, other, &channels).is_some()
         };
         if let Some((first, _)) = learnt[..k].iter().find(|(_, other)| same(other)) {
-            return Err(CliError::TrainTwice {
+            return Err(AppError::TrainTwice {
                 first: first.to_path_buf(),
                 second: path.to_path_buf(),
             });
         }
     }
-    for (path, record) in check_paths.iter().zip(check) {
+    for (path, record) in check.iter().map(named) {
         for (first, other) in &learnt {
             if let Some(found) = overlap((path, record), (first, other), &channels) {
-                return Err(CliError::CheckRepeats {
+                return Err(AppError::CheckRepeats {
                     check: path.clone(),
                     train: first.to_path_buf(),
                     found,

@@ -1,0 +1,51 @@
+//! Simulations, modes, the catalogue.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use simgap_app::effects::{Catalogue, known};
+use simgap_app::{AppError, json, modes as app_modes, simulation};
+use simgap_effects::catalogue;
+
+use crate::error::raised;
+use crate::frame::{Frame, frame};
+use crate::model::NativeModel;
+use crate::record::NativeRecord;
+use crate::work::attended;
+
+/// Columns and notes of the prediction of a model.
+#[pyfunction]
+pub(crate) fn simulate<'py>(
+    py: Python<'py>,
+    model: &Bound<'py, NativeModel>,
+    record: &Bound<'py, NativeRecord>,
+    from_rest: bool,
+) -> PyResult<(Frame<'py>, Vec<String>)> {
+    let model = Arc::clone(&model.get().model);
+    let input = record.get().input.clone();
+    let found = attended(py, None, move |_| {
+        let input = input.of_inputs(&model)?;
+        simulation::simulate(&model, &input, from_rest)
+    })?;
+    let found = found.map_err(|error: AppError| raised(error))?;
+    Ok((frame(py, found.headers, &found.columns), found.notes))
+}
+
+/// The text of `simgap modes --format json`.
+#[pyfunction]
+pub(crate) fn modes(model: &Bound<'_, NativeModel>) -> PyResult<String> {
+    let native = model.get();
+    let found = app_modes::modes(&native.model, native.label()).map_err(raised)?;
+    json(&found).map_err(raised)
+}
+
+/// The text of `simgap effects --format json`, of one kind or of all.
+#[pyfunction]
+#[pyo3(signature = (kind))]
+pub(crate) fn effects(kind: Option<&str>) -> PyResult<String> {
+    let found = match kind {
+        None => Catalogue::of(catalogue()),
+        Some(kind) => Catalogue::of(&[known("", kind).map_err(raised)?]),
+    };
+    json(&found).map_err(raised)
+}

@@ -1,0 +1,404 @@
+//! A picture of a model: nodes from the ground outwards, what joins them, what drives it and what is measured.
+//!
+//! Points of a body stand beside it, joined by a plain line; a beam is a double line, a cylinder a piston in its tube. Valves,
+//! blocks and what drives them are not drawn.
+//!
+//! Column d holds the nodes that are d members away from what does not move freely: the ground and, below all other rows,
+//! moving bases in column 0. Members between the same nodes lie beside each other.
+
+use simgap_model::{GROUND, InputKind, Location, Model, same_pair};
+
+use crate::chart::NEUTRAL_COLOURS;
+use crate::markup::escape;
+
+/// Distances between columns and rows, and the size of a node, pixels.
+const COLUMN: f64 = 190.0;
+const ROW: f64 = 130.0;
+const BOX: [f64; 2] = [88.0, 52.0];
+/// The first column and the first row.
+const FIRST: [f64; 2] = [90.0, 80.0];
+/// Where the wall stands.
+const WALL: f64 = 30.0;
+/// Distance between members that lie beside each other.
+const BESIDE: f64 = 26.0;
+/// Half the width of a spring or a damper.
+const HALF: f64 = 8.0;
+/// Half waves of a spring.
+const WAVES: usize = 8;
+
+/// A node and where it is drawn.
+struct Node {
+    name: String,
+    column: usize,
+    at: [f64; 2],
+}
+
+/// What a member is drawn as.
+#[derive(Clone, Copy)]
+enum Shape {
+    Spring,
+    Damper,
+    Beam,
+    Cylinder,
+    Rigid,
+}
+
+/// The picture of a model as SVG. Equal models give equal bytes.
+#[must_use]
+pub fn schematic_svg(model: &Model) -> String {
+    let nodes = placed(model);
+    let rows = |node: &Node| (node.at[1] - FIRST[1]) / ROW;
+    let most_rows = nodes.iter().map(rows).fold(0.0, f64::max);
+    let columns = nodes.iter().map(|node| node.column).max().unwrap_or(0);
+    let width = FIRST[0] + columns as f64 * COLUMN + 130.0;
+    let height = FIRST[1] + most_rows * ROW + 80.0;
+    let ink = NEUTRAL_COLOURS[0].light;
+    let mut body = String::new();
+    if nodes.iter().any(|node| node.name == GROUND) {
+        body.push_str(&wall(height));
+    }
+    for pair in joints(model) {
+        let members = members_between(model, &pair);
+        for (k, (shape, name)) in members.iter().enumerate() {
+            let beside = BESIDE * (k as f64 - (members.len() as f64 - 1.0) / 2.0);
+            if let (Some(a), Some(b)) = (find(&nodes, &pair[0]), find(&nodes, &pair[1])) {
+                // From left to right, so that the first member lies above the next.
+                let (a, b) = if a.column > b.column { (b, a) } else { (a, b) };
+                body.push_str(&member(
+                    *shape,
+                    name,
+                    edge(a, b, beside),
+                    edge(b, a, -beside),
+                ));
+            }
+        }
+    }
+    for node in nodes.iter().filter(|node| node.name != GROUND) {
+        body.push_str(&boxed(model, node));
+    }
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+         role=\"img\" font-family=\"sans-serif\" font-size=\"12\"><title>{}</title><rect width=\"100%\" height=\"100%\" \
+         fill=\"#FFFFFF\"/><g fill=\"none\" stroke=\"{ink}\" stroke-width=\"1.5\">{body}</g></svg>\n",
+        escape(&model.name)
+    )
+}
+
+/// Pairs of nodes that something joins, each once.
+fn joints(model: &Model) -> Vec<[String; 2]> {
+    let mut pairs: Vec<[String; 2]> = vec![];
+    let beams = model.beams.iter().map(|beam| beam.between.clone());
+    let cylinders = model.cylinders.iter().map(|c| c.between.clone());
+    let points = model.bodies.iter().flat_map(|body| {
+        let nodes = body.points.iter().map(|point| body.node_name(point));
+        nodes.map(|node| [body.name.clone(), node])
+    });
+    for pair in model
+        .members()
+        .into_iter()
+        .chain(beams)
+        .chain(cylinders)
+        .chain(points)
+    {
+        if !pairs.iter().any(|known| same_pair(known, &pair)) {
+            pairs.push(pair);
+        }
+    }
+    pairs
+}
+
+/// Nodes column by column.
+fn placed(model: &Model) -> Vec<Node> {
+    let pairs = joints(model);
+    let bases = model.base_nodes();
+    let mut columns: Vec<Vec<&str>> = vec![bases];
+    let joined = |a: &str, b: &str| {
+        pairs
+            .iter()
+            .any(|pair| same_pair(pair, &[a.into(), b.into()]))
+    };
+    let is_grounded = pairs.iter().flatten().any(|node| node == GROUND);
+    if is_grounded {
+        columns[0].insert(0, GROUND);
+    }
+    // Coordinates that are no places: rolls, modes of beams, pressures, spools, states of blocks.
+    let is_place =
+        |name: &&str| !(model.is_roll(name) || model.is_beam_mode(name) || model.is_internal(name));
+    let masses = model.masses.iter().map(|mass| mass.name.as_str());
+    let mut left: Vec<&str> = masses.filter(is_place).collect();
+    for name in pairs.iter().flatten() {
+        if name != GROUND && !left.contains(&name.as_str()) && !columns[0].contains(&name.as_str())
+        {
+            left.push(name);
+        }
+    }
+    while !left.is_empty() {
+        let last = columns.last().cloned().unwrap_or_default();
+        let near = |name: &&str| last.iter().any(|other| joined(name, other));
+        let (mut next, rest): (Vec<&str>, Vec<&str>) = left.iter().copied().partition(near);
+        left = rest;
+        if next.is_empty() {
+            // Masses that nothing joins to the others.
+            next = std::mem::take(&mut left);
+        }
+        columns.push(next);
+    }
+    let most = columns.iter().skip(1).map(Vec::len).max().unwrap_or(0);
+    let mut nodes = vec![];
+    for (column, names) in columns.iter().enumerate() {
+        let mut row = if column == 0 { most } else { 0 };
+        for &name in names {
+            let is_wall = name == GROUND;
+            let x = FIRST[0] + column as f64 * COLUMN;
+            let y = FIRST[1] + ROW * if is_wall { 0.0 } else { row as f64 };
+            let at = [x, y];
+            let name = name.to_owned();
+            nodes.push(Node { name, column, at });
+            row += usize::from(!is_wall);
+        }
+    }
+    nodes
+}
+
+fn find<'a>(nodes: &'a [Node], name: &str) -> Option<&'a Node> {
+    nodes.iter().find(|node| node.name == name)
+}
+
+/// What joins two nodes, with its name; a point and its body have none.
+fn members_between<'a>(model: &'a Model, pair: &[String; 2]) -> Vec<(Shape, &'a str)> {
+    let springs = model.springs.iter().filter(|s| same_pair(&s.between, pair));
+    let dampers = model.dampers.iter().filter(|d| same_pair(&d.between, pair));
+    let beams = model.beams.iter().filter(|b| same_pair(&b.between, pair));
+    let cylinders = model
+        .cylinders
+        .iter()
+        .filter(|c| same_pair(&c.between, pair));
+    let mut found: Vec<(Shape, &str)> = springs
+        .map(|spring| (Shape::Spring, spring.name.as_str()))
+        .chain(dampers.map(|damper| (Shape::Damper, damper.name.as_str())))
+        .chain(beams.map(|beam| (Shape::Beam, beam.name.as_str())))
+        .chain(cylinders.map(|cylinder| (Shape::Cylinder, cylinder.name.as_str())))
+        .collect();
+    if found.is_empty() {
+        found.push((Shape::Rigid, ""));
+    }
+    found
+}
+
+/// Where a member leaves node `a` towards node `b`, `beside` the line between them.
+fn edge(a: &Node, b: &Node, beside: f64) -> [f64; 2] {
+    if a.name == GROUND {
+        // The wall is as high as the picture.
+        return [WALL, b.at[1] + beside];
+    }
+    if a.column == b.column {
+        let down = if b.at[1] > a.at[1] { 1.0 } else { -1.0 };
+        return [a.at[0] + beside * down, a.at[1] + down * BOX[1] / 2.0];
+    }
+    let right = if b.column > a.column { 1.0 } else { -1.0 };
+    [a.at[0] + right * BOX[0] / 2.0, a.at[1] + right * beside]
+}
+
+/// The ground: a hatched wall.
+fn wall(height: f64) -> String {
+    let x = WALL;
+    let hatches: String = (0..((height - 40.0) / 12.0) as usize)
+        .map(|k| {
+            let y = 24.0 + 12.0 * k as f64;
+            format!("M{x} {y}l-10 10")
+        })
+        .collect();
+    format!(
+        "<path d=\"M{x} 20V{}{hatches}\"/>{}",
+        height - 20.0,
+        label([x - 4.0, height - 6.0], "ground")
+    )
+}
+
+fn label([x, y]: [f64; 2], text: &str) -> String {
+    format!(
+        "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" stroke=\"none\" fill=\"{}\">{}</text>",
+        NEUTRAL_COLOURS[0].light,
+        escape(text)
+    )
+}
+
+/// A member from one point to another.
+fn member(shape: Shape, name: &str, from: [f64; 2], to: [f64; 2]) -> String {
+    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+    let length = dx.hypot(dy).max(1.0);
+    let (u, n) = ([dx / length, dy / length], [-dy / length, dx / length]);
+    // A point so far along and so far beside the line.
+    let point = |along: f64, beside: f64| {
+        let x = from[0] + along * length * u[0] + beside * n[0];
+        let y = from[1] + along * length * u[1] + beside * n[1];
+        format!("{x:.1} {y:.1}")
+    };
+    let (begin, end) = (0.25, 0.75);
+    let path = match shape {
+        Shape::Spring => {
+            let turns: String = (0..=WAVES)
+                .map(|k| {
+                    let along = begin + (end - begin) * k as f64 / WAVES as f64;
+                    let side = if k == 0 || k == WAVES {
+                        0.0
+                    } else if k % 2 == 0 {
+                        HALF
+                    } else {
+                        -HALF
+                    };
+                    format!("L{}", point(along, side))
+                })
+                .collect();
+            format!("M{}{turns}L{}", point(0.0, 0.0), point(1.0, 0.0))
+        }
+        Shape::Damper => format!(
+            "M{}L{}M{}L{}L{}L{}M{}L{}M{}L{}",
+            point(0.0, 0.0),
+            point(0.4, 0.0),
+            point(0.6, -HALF),
+            point(0.4, -HALF),
+            point(0.4, HALF),
+            point(0.6, HALF),
+            point(0.52, -HALF + 2.0),
+            point(0.52, HALF - 2.0),
+            point(0.52, 0.0),
+            point(1.0, 0.0)
+        ),
+        Shape::Beam => {
+            let [a, b, c, d] = [(0.0, -2.0), (1.0, -2.0), (0.0, 2.0), (1.0, 2.0)]
+                .map(|(along, beside)| point(along, beside));
+            format!("M{a}L{b}M{c}L{d}")
+        }
+        // The tube on the side of the first node, the piston and its rod on that of the second.
+        Shape::Cylinder => {
+            let tube = [
+                (0.25, -HALF),
+                (0.7, -HALF),
+                (0.7, HALF),
+                (0.25, HALF),
+                (0.25, -HALF),
+            ]
+            .map(|(along, beside)| point(along, beside));
+            let [first, tube_end] = [point(0.0, 0.0), point(0.25, 0.0)];
+            let piston = [(0.48, -HALF), (0.48, HALF), (0.48, 0.0), (1.0, 0.0)]
+                .map(|(along, beside)| point(along, beside));
+            format!(
+                "M{first}L{tube_end}M{}M{}L{}M{}L{}",
+                tube.join("L"),
+                piston[0],
+                piston[1],
+                piston[2],
+                piston[3]
+            )
+        }
+        Shape::Rigid => format!("M{}L{}", point(0.0, 0.0), point(1.0, 0.0)),
+    };
+    let middle = [(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0];
+    if matches!(shape, Shape::Rigid) {
+        return format!("<path d=\"{path}\"/>");
+    }
+    let title = format!("<title>{}</title>", escape(name));
+    let beyond = match shape {
+        Shape::Beam | Shape::Rigid => middle[1] - 7.0,
+        Shape::Cylinder | Shape::Spring => middle[1] - HALF - 3.0,
+        Shape::Damper => middle[1] + HALF + 13.0,
+    };
+    format!(
+        "<path d=\"{path}\">{title}</path>{}",
+        label([middle[0], beyond], name)
+    )
+}
+
+/// A node, what drives it above and what is measured or acts on it below.
+fn boxed(model: &Model, node: &Node) -> String {
+    let [x, y] = node.at;
+    let [w, h] = BOX;
+    let is_base = model.base_nodes().contains(&node.name.as_str());
+    let dashes = if is_base {
+        " stroke-dasharray=\"5 3\""
+    } else {
+        ""
+    };
+    let mut text = format!(
+        "<rect x=\"{}\" y=\"{}\" width=\"{w}\" height=\"{h}\" rx=\"3\" fill=\"{}\"{dashes}/>{}",
+        x - w / 2.0,
+        y - h / 2.0,
+        if is_base { "#FFFFFF" } else { "#EAEEF2" },
+        label([x, y + 4.0], &node.name)
+    );
+    let drives = model.inputs.iter().filter(|input| input.at == node.name);
+    for (k, input) in drives.enumerate() {
+        let above = y - h / 2.0 - 10.0 - 15.0 * k as f64;
+        let kind = match input.kind {
+            InputKind::Force => "force",
+            InputKind::Displacement => "displacement",
+            InputKind::Command => "command",
+            InputKind::SetPoint => "set point",
+        };
+        text.push_str(&format!(
+            "<path d=\"M{} {above}h24m-6 -4l6 4l-6 4\"/>",
+            x - w / 2.0
+        ));
+        let words = format!("{} ({kind})", input.channel);
+        text.push_str(&format!(
+            "<text x=\"{}\" y=\"{}\" stroke=\"none\" fill=\"{}\">{}</text>",
+            x - w / 2.0 + 30.0,
+            above + 4.0,
+            NEUTRAL_COLOURS[0].light,
+            escape(&words)
+        ));
+    }
+    let measured = model.outputs.iter().filter(|output| match &output.between {
+        Some([a, _]) => *a == node.name,
+        None => output.at.as_ref() == Some(&node.name),
+    });
+    let lines = measured.map(|output| format!("measured: {}", output.channel));
+    let acting = model.effects.iter().filter(|effect| match &effect.at {
+        Location::Between([a, b]) => *a == node.name || (*b == node.name && a == GROUND),
+        Location::Mass(mass) => *mass == node.name,
+        Location::Input(_) | Location::Channel(_) => false,
+    });
+    let lines = lines.chain(acting.map(|effect| effect.kind.replace('_', " ")));
+    for (k, line) in lines.enumerate() {
+        text.push_str(&label([x, y + h / 2.0 + 15.0 + 14.0 * k as f64], &line));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn model(name: &str) -> Model {
+        let text = format!(
+            "schema = \"simgap-model/1\"\nname = \"two\"\n[[mass]]\nname = \"{name}\"\nvalue = 1.0\n\
+             [[mass]]\nname = \"free\"\nvalue = 1.0\n[[spring]]\nname = \"k\"\nbetween = [\"{name}\", \"ground\"]\n\
+             stiffness = 1.0\n[[damper]]\nname = \"c\"\nbetween = [\"ground\", \"{name}\"]\ndamping = 1.0\n\
+             [[output]]\nchannel = \"y\"\nkind = \"displacement\"\nat = \"{name}\"\n"
+        );
+        Model::from_toml(&text).unwrap_or_default()
+    }
+
+    #[test]
+    fn verify_nodes_stand_in_the_order_of_their_distance_from_the_ground() {
+        let model = model("table");
+        let nodes = placed(&model);
+        let told: Vec<(&str, usize)> = nodes.iter().map(|n| (n.name.as_str(), n.column)).collect();
+        assert_eq!(told, [("ground", 0), ("table", 1), ("free", 2)]);
+    }
+
+    #[test]
+    fn verify_names_are_escaped_and_every_part_is_drawn() {
+        let svg = schematic_svg(&model("a<b"));
+        assert!(svg.contains("a&lt;b") && !svg.contains("a<b"));
+        for part in [
+            "<title>k</title>",
+            "<title>c</title>",
+            "measured: y",
+            "ground",
+        ] {
+            assert!(svg.contains(part), "{part}");
+        }
+    }
+}
