@@ -1,6 +1,6 @@
 //! From a seed and a recipe to a case.
 
-use simgap_effects::{Effect, Family, Placed, equivalents_beside};
+use simgap_effects::{Effect, Family, Placed, SiteKind, equivalents_beside};
 use simgap_record::{Channel, Record};
 
 use crate::bench::Bench;
@@ -78,7 +78,12 @@ pub(crate) fn draft(
     wanted: &[&'static dyn Effect],
     level: Level,
 ) -> Result<Option<Draft>, BlindError> {
-    let plant = plant::draw(random)?;
+    let is_hydraulic =
+        |effect: &&dyn Effect| matches!(effect.site(), SiteKind::Chambers | SiteKind::Spool);
+    let plant = match wanted.iter().any(is_hydraulic) {
+        true => plant::draw_hydraulic(random)?,
+        false => plant::draw(random)?,
+    };
     let benches = benches(random, &plant);
     let [least, most] = level.noise_share();
     let noise_share = random.log_uniform(least, most);
@@ -166,7 +171,13 @@ fn benches(random: &mut Random, plant: &Plant) -> Vec<Bench> {
                 .zip(&rest)
                 .for_each(|(x, x0)| *x += x0);
             let speed = std::f64::consts::TAU * plant.band_hz[0];
-            let velocity = state(if driven { moved * speed } else { 0.0 });
+            let mut velocity = state(if driven { moved * speed } else { 0.0 });
+            // Pressures, spools and controllers begin as the model says.
+            for (i, mass) in model.masses.iter().enumerate() {
+                if model.is_internal(&mass.name) {
+                    (displacement[i], velocity[i]) = (0.0, 0.0);
+                }
+            }
             let lead = if at_rest || !driven {
                 0
             } else {

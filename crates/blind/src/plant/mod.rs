@@ -2,9 +2,10 @@
 
 mod one;
 mod parts;
+mod servo;
 mod several;
 
-use simgap_model::{InputKind, Model, OutputKind, damped_modes};
+use simgap_model::{InputKind, Model, OutputKind, damped_modes_of};
 
 use crate::BlindError;
 use crate::random::Random;
@@ -52,13 +53,19 @@ pub(crate) fn draw(random: &mut Random) -> Result<Plant, BlindError> {
     finish(random, model, &sizes)
 }
 
+/// Draws a plant with a hydraulic drive, for what only such a plant has.
+pub(crate) fn draw_hydraulic(random: &mut Random) -> Result<Plant, BlindError> {
+    let (model, sizes) = servo::axis(random)?;
+    finish(random, model, &sizes)
+}
+
 fn finish(random: &mut Random, model: Model, sizes: &Sizes) -> Result<Plant, BlindError> {
     let f = sizes.freq_hz;
     let band_hz = [
         f * random.log_uniform(0.15, 0.4),
         f * random.log_uniform(1.3, 2.5),
     ];
-    let modes = damped_modes(&model.matrices()?)?;
+    let modes = damped_modes_of(&model.matrices()?, &model.first_order())?;
     let highest = modes
         .iter()
         .map(|mode| mode.damped_freq_hz)
