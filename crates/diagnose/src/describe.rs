@@ -208,7 +208,7 @@ fn description(model: &Model, decision: &Decision, checked: &Checked) -> Vec<Str
     let mut sentences = vec![];
     if checked.is_refuted {
         sentences.push(
-            "the check records refute the best set: it predicts them worse than re-estimated parameters do".into(),
+            "the check records refute the best set: it predicts them no better than re-estimated parameters do".into(),
         );
     }
     let channels = checked.gap.channels.iter();

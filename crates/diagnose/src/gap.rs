@@ -55,6 +55,24 @@ pub(crate) fn total(nrmse: &[f64]) -> f64 {
     (nrmse.iter().map(|e| e * e).sum::<f64>() / nrmse.len().max(1) as f64).sqrt()
 }
 
+/// Share of what a model leaves, rms over the channels, that another would close if it were true: 1 − √(1 − d²/r²), where r²
+/// is what the first leaves and d² how far apart the two predict.
+pub(crate) fn closed_if_true(std: &[f64], first: &Prediction, other: &Prediction) -> f64 {
+    let apart = std.iter().enumerate().map(|(c, std)| {
+        let runs = first.discrepancy.iter().zip(&other.discrepancy);
+        let (mut sum, mut count) = (0.0, 0);
+        for (one, other) in runs {
+            let pairs = one[c].iter().zip(&other[c]);
+            sum += pairs.map(|(one, other)| (one - other).powi(2)).sum::<f64>();
+            count += one[c].len();
+        }
+        (sum / count.max(1) as f64).sqrt() / std
+    });
+    let apart = total(&apart.collect::<Vec<f64>>());
+    let share = apart / total(&first.nrmse).max(f64::MIN_POSITIVE);
+    1.0 - (1.0 - share * share).max(0.0).sqrt()
+}
+
 /// White measurement noise of each channel over std(measured), from what is left after correction;
 /// never more than all of what is left.
 pub(crate) fn noise_floor(check: &Problem, effects: &[Placed], corrected: &Prediction) -> Vec<f64> {
@@ -125,6 +143,23 @@ pub(crate) fn gap(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What is left is the sum of two orthogonal parts of 0.3 and 0.4: a model that predicts the second leaves 0.3 of 0.5.
+    #[test]
+    fn verify_what_a_true_model_would_close() {
+        let leaves = |channel: Vec<f64>| Prediction {
+            simulators: vec![],
+            nrmse: vec![(channel.iter().map(|d| d * d).sum::<f64>() / 4.0).sqrt() / 2.0],
+            discrepancy: vec![vec![channel]],
+            initial: vec![],
+        };
+        let first = leaves(vec![1.4, 0.2, -1.4, -0.2]);
+        let other = leaves(vec![0.6, -0.6, -0.6, 0.6]);
+        assert!((first.nrmse[0] - 0.5).abs() < 1e-12);
+        assert!((other.nrmse[0] - 0.3).abs() < 1e-12);
+        assert!((closed_if_true(&[2.0], &first, &other) - 0.4).abs() < 1e-12);
+        assert!(closed_if_true(&[2.0], &first, &first).abs() < 1e-12);
+    }
 
     #[test]
     fn verify_closed_figures_of_the_contract() {

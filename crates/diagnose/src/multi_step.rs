@@ -15,19 +15,20 @@ use crate::gap::{predict, total};
 const MOST_STRETCHES: usize = 20;
 const SHORTEST: usize = 128;
 
-/// Whether a corrected model predicts stretches of the check records worse than re-estimated parameters do, each from an
-/// initial state of its own.
-pub(crate) fn contradicts(
+/// Whether a corrected model closes a share of what re-estimated parameters leave of stretches of the check records, each
+/// from an initial state of its own.
+pub(crate) fn closes(
     check: &Problem,
     recalibrated: &[Placed],
     corrected: &[Placed],
     options: &FitOptions,
+    share: f64,
 ) -> Result<bool, EstimateError> {
     let cut = check.with_runs(check.runs.iter().flat_map(stretches).collect());
     let left = |placed: &[Placed]| -> Result<f64, EstimateError> {
         Ok(total(&predict(&cut, placed, options)?.nrmse))
     };
-    Ok(left(corrected)? > left(recalibrated)?)
+    Ok(left(corrected)? <= (1.0 - share) * left(recalibrated)?)
 }
 
 fn stretches(run: &Run) -> impl Iterator<Item = Run> + '_ {

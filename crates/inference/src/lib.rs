@@ -28,7 +28,7 @@ pub use coincidence::Coincidence;
 pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterior};
 pub use model_space::ModelSpace;
 pub use noise_model::NoiseModel;
-pub use other::{FreeLaw, Gap, Other, other};
+pub use other::{FreeLaw, Gap, Other, RELEVANT_SHARE, other};
 pub use proposals::RECALIBRATION_STD;
 pub use search::{Budget, Search};
 pub use stretches::{bounds, recalibrate};

@@ -24,10 +24,10 @@ use crate::search::Search;
 /// p₀ of (2).
 const PRIOR: f64 = 0.05;
 /// m and n of (2).
-const ANY_CAUSE: f64 = 1.0;
+const ANY_CAUSE: f64 = 1.3;
 const FOUND_LAW: f64 = 2.0;
 /// r of (2): the share of a gap below which what is left does not count.
-pub(crate) const RELEVANT_SHARE: f64 = 0.05;
+pub const RELEVANT_SHARE: f64 = 0.05;
 /// Free laws that are fitted.
 const FITTED: usize = 2;
 

@@ -199,7 +199,7 @@ fn left_over(html: &mut Html, diagnosis: &Diagnosis) {
         ));
     }
     if verdict.refuted {
-        text.push_str(" The check records refute it: re-estimated parameters predict them better.");
+        text.push_str(" The check records refute it: it predicts them no better than re-estimated parameters do.");
     }
     html.element("p", &[], &text);
 }
