@@ -111,14 +111,12 @@ impl<'a> Check<'a> {
         let is_complete = left <= INCOMPLETE;
         let is_tested =
             closed_if_true(&self.problem.output_std(), &predictions[1], &predictions[2]) >= share;
-        let is_idle = share > 0.0
-            && !is_complete
-            && is_tested
-            && gap.corrected > (1.0 - share) * gap.recalibrated;
+        let is_idle = share > 0.0 && is_tested && gap.corrected > (1.0 - share) * gap.recalibrated;
         let follows = || multi_step::closes(&self.problem, known, placed, &self.plain, share);
         let mut notes = vec![];
-        let is_refuted = (is_worse || is_idle) && !follows()?;
-        if is_worse && !is_refuted {
+        // What leaves no more than noise and the accuracy of the simulation contradicts nothing.
+        let is_refuted = !is_complete && (is_worse || is_idle) && !follows()?;
+        if is_worse && !is_complete && !is_refuted {
             notes.push(
                 "over a whole check record the corrected model departs from the measurement, in short stretches it follows: the motion \
                  depends on differences that no estimate resolves"
