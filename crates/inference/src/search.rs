@@ -1,6 +1,7 @@
 //! The search: which proposals are made, within a budget.
 //!
 //! ```text
+//! wrong nominal parameters: those that are off once all are re-estimated
 //! single effects: by score; from many values; dynamics of parameters
 //! effects beside nominal parameters that are re-estimated
 //! pairs, sets of three: from the best sets so far, by score and from many values
@@ -19,7 +20,7 @@ use simgap_estimate::{
     Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
 };
 
-use crate::candidate_model::{CandidateModel, is_nominal, name, rank, remove};
+use crate::candidate_model::{CandidateModel, is_nominal, name, rank};
 use crate::marginal_likelihood::{NominalPrior, log_marginal_likelihood};
 use crate::model_space::ModelSpace;
 use crate::noise_model::{NOISE_KNOWN, NoiseModel, noise_variance, rounding_variance, stepped};
@@ -231,6 +232,9 @@ impl<'a> Search<'a> {
         if self.is_settled(&pool)? {
             return Ok(pool);
         }
+        step("nominal parameters");
+        let recalibrated = self.recalibrated(base);
+        pool.extend(self.with_parameters_named(recalibrated.clone().into_iter().collect()));
         step("single effects");
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
@@ -242,9 +246,11 @@ impl<'a> Search<'a> {
         }
         pool.extend(self.fit_dynamics_of_parameters(base, &pool, &linear));
         rank(&mut pool);
-        if !self.is_settled(&pool)? {
+        if let Some(recalibrated) = recalibrated
+            && !self.is_settled(&pool)?
+        {
             step("effects beside re-estimated parameters");
-            pool.extend(self.beside_recalibrated(base)?);
+            pool.extend(self.beside_recalibrated(&recalibrated)?);
             rank(&mut pool);
         }
         let mut front: Vec<CandidateModel> = pool.clone();
@@ -307,7 +313,7 @@ impl<'a> Search<'a> {
             let changed = (0..best.effects().len()).into_par_iter().map(|i| {
                 let mut changed = self.grow(&best, i)?;
                 changed.extend(self.shrink(&best, i));
-                if let Ok(smaller) = self.fit(&remove(&best.fit.estimate, i, self.nominal)) {
+                if let Ok(smaller) = self.fit(&self.without(&best, i)) {
                     changed.extend(self.extend(&smaller, EXCHANGED)?);
                     changed.push(smaller);
                 }

@@ -1,6 +1,7 @@
 //! Proposals of sets: where the next fits start. They may miss a set; they do not judge one.
 
 mod add;
+mod compensated;
 mod grow;
 mod multiple_shooting;
 mod multistart;

@@ -8,9 +8,10 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Family, Placed};
-use simgap_estimate::{EstimateError, FitOptions, Start, linearise_at};
+use simgap_estimate::{EstimateError, Fit, FitOptions, Start, linearise_at};
 
 use crate::candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
+use crate::proposals::compensated::compensated;
 use crate::search::Search;
 use crate::stretches::recalibrate;
 
@@ -30,14 +31,20 @@ const LEFT: f64 = 2.0;
 const MOST_OFF: usize = 6;
 
 impl Search<'_> {
-    /// Sets of no effect or more, each with the nominal parameters that are off beside it.
+    /// Every nominal parameter re-estimated under a wide prior; nothing where there is none or the fit fails.
+    pub(crate) fn recalibrated(&self, base: &CandidateModel) -> Option<CandidateModel> {
+        if base.fit.estimate.nominal.is_empty() {
+            return None;
+        }
+        let fit = recalibrate(self.problem, &base.fit.estimate, &self.wide_options()).ok()?;
+        Some(self.candidate_model(fit))
+    }
+
+    /// Sets of one effect or more beside re-estimated nominal parameters, each with those that are off as effects of the set.
     pub(crate) fn beside_recalibrated(
         &self,
-        base: &CandidateModel,
+        recalibrated: &CandidateModel,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        if base.fit.estimate.nominal.is_empty() {
-            return Ok(vec![]);
-        }
         let wide = Search {
             options: self.wide_options(),
             space: self
@@ -45,14 +52,10 @@ impl Search<'_> {
                 .of_families(|family| family != Family::NominalParameter),
             ..*self
         };
-        let Ok(fit) = recalibrate(self.problem, &base.fit.estimate, &wide.options) else {
-            return Ok(vec![]);
-        };
-        let recalibrated = wide.candidate_model(fit);
         let linear = linearise_at(self.problem, &recalibrated.fit, &wide.options)?;
-        let mut found = wide.extend_at(&recalibrated, &linear, FITTED)?;
-        found.extend(wide.fit_joint(&recalibrated, &linear)?);
-        found.push(recalibrated);
+        let mut found = wide.extend_at(recalibrated, &linear, FITTED)?;
+        found.extend(wide.fit_joint(recalibrated, &linear)?);
+        found.push(recalibrated.clone());
         rank(&mut found);
         let mut larger = vec![];
         for set in found.iter().take(EXTENDED) {
@@ -83,7 +86,7 @@ impl Search<'_> {
         found.truncate(PROPOSED);
         let starts: Vec<Start> = found
             .iter()
-            .map(|set| self.name_parameters(&set.fit.estimate))
+            .map(|set| self.name_parameters(&set.fit))
             .collect();
         let proposed = starts.par_iter().filter_map(|start| self.fit(start).ok());
         let mut proposed: Vec<CandidateModel> = proposed.collect();
@@ -95,24 +98,27 @@ impl Search<'_> {
         let added = found
             .iter()
             .take(PRUNED)
-            .flat_map(|set| self.add_parameters(&set.fit.estimate));
+            .flat_map(|set| self.add_parameters(&set.fit));
         let both_ways: Vec<CandidateModel> = both_ways.chain(added).collect();
         proposed.extend(both_ways);
         proposed
     }
 
-    /// The effects of a start beside nominal parameters as stated, then with those that are off, the one that helps most
+    /// The effects of a fit beside nominal parameters as stated, then with those that are off, the one that helps most
     /// first, as long as the set grows likelier.
-    fn add_parameters(&self, start: &Start) -> Vec<CandidateModel> {
-        let mut off = self.off(start);
-        let Ok(first) = self.fit(&as_stated(start.clone())) else {
+    fn add_parameters(&self, wide: &Fit) -> Vec<CandidateModel> {
+        let mut off = self.off(&wide.estimate);
+        let Ok(first) = self.fit(&compensated(wide, is_nominal)) else {
             return vec![];
         };
         let mut grown = vec![first];
         while let Some(last) = grown.last() {
             let larger = off.par_iter().filter_map(|placed| {
-                let start = add(&last.fit.estimate, placed.clone());
-                self.fit(&start).ok()
+                let is_named = |other: &Placed| {
+                    let mut named = last.effects().iter().chain([placed]);
+                    named.any(|known| name(known) == name(other))
+                };
+                self.fit(&named(wide, is_named)).ok()
             });
             let best = likeliest(larger.collect());
             let Some(best) = best.filter(|best| best.log_posterior() > last.log_posterior()) else {
@@ -145,9 +151,21 @@ impl Search<'_> {
     }
 
     /// A start in which every nominal parameter that has left what the model states of it is an effect.
-    fn name_parameters(&self, start: &Start) -> Start {
-        let off = self.off(start).into_iter();
-        as_stated(off.fold(start.clone(), |named, placed| add(&named, placed)))
+    fn name_parameters(&self, wide: &Fit) -> Start {
+        let off = self.off(&wide.estimate);
+        named(wide, |placed| {
+            off.iter().any(|known| name(known) == name(placed))
+        })
+    }
+
+    /// A start without one of the effects of a set; nominal parameters move along with one that returns to its nominal value.
+    pub(crate) fn without(&self, set: &CandidateModel, index: usize) -> Start {
+        let removed = &set.effects()[index];
+        let start = match is_nominal(removed) {
+            true => compensated(&set.fit, |placed| name(placed) == name(removed)),
+            false => set.fit.estimate.clone(),
+        };
+        remove(&start, index, self.nominal)
     }
 
     /// A set with one parameter less, and again, as long as it is likelier so.
@@ -157,10 +175,9 @@ impl Search<'_> {
             let last = pruned.last().unwrap_or(set);
             let parameters = (0..last.effects().len()).filter(|&i| is_nominal(&last.effects()[i]));
             let parameters: Vec<usize> = parameters.collect();
-            let smaller = parameters.par_iter().filter_map(|&i| {
-                let start = remove(&last.fit.estimate, i, self.nominal);
-                self.fit(&start).ok()
-            });
+            let smaller = parameters
+                .par_iter()
+                .filter_map(|&i| self.fit(&self.without(last, i)).ok());
             let best = likeliest(smaller.collect());
             match best.filter(|best| best.log_posterior() > last.log_posterior()) {
                 Some(best) => pruned.push(best),
@@ -170,12 +187,12 @@ impl Search<'_> {
     }
 }
 
-/// A start with its nominal parameters as the model states them.
-fn as_stated(mut start: Start) -> Start {
-    for placed in &mut start.nominal {
-        placed.values.fill(1.0);
-    }
-    start
+/// A start in which some nominal parameters are effects, and the others as the model states them.
+fn named(wide: &Fit, is_named: impl Fn(&Placed) -> bool) -> Start {
+    let start = compensated(wide, |placed| !is_named(placed));
+    let off: Vec<Placed> = start.nominal.clone();
+    let off = off.into_iter().filter(|placed| is_named(placed));
+    off.fold(start, |named, placed| add(&named, placed))
 }
 
 fn likeliest(sets: Vec<CandidateModel>) -> Option<CandidateModel> {
