@@ -156,6 +156,9 @@ mod tests {
         let to_root = ("b.rs", "use crate::LARGEST;\npub struct B;\n");
         let root = "mod b;\npub use b::B;\npub const LARGEST: usize = 3;\n";
         assert_eq!(circles(&[("lib.rs", root), to_root]), [""; 0]);
+        // Nor does it need what has the name of the module it declares.
+        let named = root.replace("b::B", "b::{B, b}");
+        assert_eq!(circles(&[("lib.rs", &named), to_root]), [""; 0]);
         let root = format!("{root}fn f(b: B) {{}}\n");
         assert_eq!(circles(&[("lib.rs", &root), to_root]).len(), 1);
     }
@@ -194,6 +197,7 @@ mod tests {
         for b in [
             "fn g() {}\n#[cfg(test)]\nmod tests {\n    use crate::a::A;\n}\n",
             "#[cfg(test)]\nuse crate::a::A;\nfn g() {}\n",
+            "fn g() {}\n#[cfg(all(test, unix))]\nmod tests {\n    use crate::a::A;\n}\n",
             "//! [`crate::a::A`]\nfn g() { h(\"crate::a::A\"); }\n",
             "use other::a::A;\npub(in crate::a) fn g() {}\n",
         ] {
