@@ -5,17 +5,20 @@
 //! unless a rule says otherwise. They work on the text of lines, so that they need no compiler;
 //! what a macro assembles is not seen.
 
+mod circles;
+mod error;
+mod finding;
 mod floors;
+mod modules;
 mod references;
 mod sources;
 mod text;
+mod tokens;
 mod workspace;
 
-use std::fmt;
-use std::path::PathBuf;
-
-use thiserror::Error;
-
+pub use circles::no_file_imports_itself_over_others;
+pub use error::TidyError;
+pub use finding::Finding;
 pub use floors::{
     dependencies_point_down, diagnosis_cannot_reach_the_cases, every_crate_declares_a_floor,
     every_crate_takes_the_lints_of_the_workspace, packages_are_named_after_their_folders,
@@ -26,54 +29,6 @@ pub use sources::{
     published_numbers_are_only_embedded, who_may_touch_files,
 };
 pub use workspace::{Package, Source, Workspace};
-
-/// Something that breaks a rule, and where.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Finding {
-    /// Path from the root of the workspace.
-    pub file: String,
-    /// Line, from 1.
-    pub line: usize,
-    /// What was found and what is needed.
-    pub message: String,
-}
-
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}", self.file, self.line, self.message)
-    }
-}
-
-/// Why the rules could not be checked.
-#[derive(Debug, Error)]
-pub enum TidyError {
-    /// Cargo could not be started.
-    #[error("cargo metadata could not be started ({source})")]
-    Start {
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// Cargo refused.
-    #[error("cargo metadata failed: {found}")]
-    Cargo {
-        /// What it wrote.
-        found: String,
-    },
-    /// Cargo wrote something else than expected.
-    #[error("cargo metadata wrote what cannot be read ({source})")]
-    Metadata {
-        /// What the reader says.
-        source: serde_json::Error,
-    },
-    /// A file.
-    #[error("{path}: cannot be read ({source})", path = .path.display())]
-    File {
-        /// Which file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-}
 
 /// A rule: from the workspace to what breaks it.
 pub type Rule = fn(&Workspace) -> Vec<Finding>;
@@ -91,6 +46,7 @@ pub const RULES: &[Rule] = &[
     published_numbers_are_only_embedded,
     nothing_is_unsafe,
     files_are_short,
+    no_file_imports_itself_over_others,
     every_reference_resolves,
     every_source_listed_is_cited,
 ];

@@ -3,9 +3,10 @@
 use simgap_effects::{Effect, Family, Placed, SiteKind, equivalents_beside};
 use simgap_record::{Channel, Record};
 
+use crate::accept::accept;
 use crate::bench::Bench;
 use crate::case::{Case, Hidden, Status, Truth, known};
-use crate::draft::{Draft, accept, deviations, outputs, place, two_parameters};
+use crate::draft::{Draft, deviations, outputs, place, two_parameters};
 use crate::excitation::{self, Range, Signal};
 use crate::gap::std;
 use crate::plant::{self, Plant, input_unit, output_unit};

@@ -2,8 +2,9 @@
 
 use simgap_effects::same_place;
 
+use crate::answer::Named;
 use crate::case::known;
-use crate::score::{Named, Outcome, Verdict};
+use crate::outcome::{Outcome, Verdict};
 use crate::{Hidden, Status, Truth};
 
 /// Which effect of the truth a named one stands for.

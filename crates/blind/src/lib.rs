@@ -26,6 +26,8 @@
 //! # Ok::<(), simgap_blind::BlindError>(())
 //! ```
 
+mod accept;
+mod answer;
 mod bench;
 mod case;
 mod closing;
@@ -38,6 +40,7 @@ mod gap;
 mod generate;
 mod judge;
 mod level;
+mod outcome;
 mod plant;
 mod random;
 mod recipe;
@@ -47,6 +50,7 @@ mod size;
 mod table;
 mod totals;
 
+pub use answer::{Answer, Named};
 pub use bench::OVERSAMPLING;
 pub use case::{Case, Equivalent, Hidden, Status, Truth};
 pub use closing::{Closing, Signals, gap_to};
@@ -54,8 +58,9 @@ pub use error::BlindError;
 pub use foreign::foreign_effects;
 pub use generate::generate;
 pub use level::Level;
+pub use outcome::{Outcome, Verdict};
 pub use recipe::{Recipe, schedule};
-pub use score::{Answer, First, Named, Outcome, Role, Score, Verdict, score};
+pub use score::{First, Role, Score, score};
 pub use seal::{SealedCase, open, seal, sha256};
 pub use table::{
     Requirement, render_calibration, render_confusion, render_figures, render_requirements,

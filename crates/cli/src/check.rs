@@ -8,8 +8,8 @@ use simgap_record::{Channel, Defect, QualityFinding, Quantity, Record, UnitKind,
 use crate::args::{CheckArgs, Format};
 use crate::audit;
 use crate::error::CliError;
+use crate::stdout::{say, say_plain};
 use crate::text::{STRONG, figure, named, shown, styled, table};
-use crate::{say, say_plain};
 
 /// The schema of `--format json`.
 const SCHEMA: &str = "simgap-check/1";

@@ -10,8 +10,8 @@ use simgap_report::lines::answer_lines;
 use crate::args::{CompareArgs, Format};
 use crate::error::CliError;
 use crate::progress::Steps;
+use crate::stdout::{say, say_plain};
 use crate::text::{STRONG, figure, named, shown, styled};
-use crate::{say, say_plain};
 
 /// Where the text of a named line begins.
 const INDENT: usize = 14;

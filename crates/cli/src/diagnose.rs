@@ -10,7 +10,7 @@ use simgap_diagnose::Cancel;
 use crate::args::{DiagnoseArgs, Format};
 use crate::error::CliError;
 use crate::progress::Steps;
-use crate::say;
+use crate::stdout::say;
 
 /// More threads than any machine has cores for; starting a hundred thousand takes minutes.
 const MOST_JOBS: usize = 1024;
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     })??;
     let json = answer.write(&args.out, args.sets)?;
     match args.format {
-        Format::Json => crate::say_plain(&json)?,
+        Format::Json => crate::stdout::say_plain(&json)?,
         Format::Human => {
             let report = args.out.join("report.html");
             say(&format!(

@@ -6,8 +6,8 @@ use simgap_effects::{Effect, Family, Parameter, catalogue};
 
 use crate::args::{EffectsArgs, Format};
 use crate::error::CliError;
+use crate::stdout::{say, say_plain};
 use crate::text::{FAINT, STRONG, named, styled, table};
-use crate::{say, say_plain};
 
 /// Where the text of a named line begins.
 const INDENT: usize = 17;

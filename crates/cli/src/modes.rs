@@ -9,8 +9,8 @@ use simgap_record::write_text_atomic;
 
 use crate::args::{Format, ModesArgs};
 use crate::error::CliError;
+use crate::stdout::{say, say_plain};
 use crate::text::{STRONG, figure, shown, styled, table};
-use crate::{say, say_plain};
 
 /// Files of `--out`.
 const FILES: [&str; 2] = ["modes.json", "modes.svg"];

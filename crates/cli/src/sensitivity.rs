@@ -11,8 +11,8 @@ use simgap_report::chart::{Bar, BarChart, Role};
 use crate::args::{Format, SensitivityArgs};
 use crate::error::CliError;
 use crate::modes::{ended, prepare, write};
+use crate::stdout::{say, say_plain};
 use crate::text::{STRONG, figure, shown, styled, table};
-use crate::{say, say_plain};
 
 /// The schema of `--format json`.
 const SCHEMA: &str = "simgap-sensitivity/1";

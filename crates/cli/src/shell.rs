@@ -10,7 +10,7 @@ use simgap_record::Batch;
 
 use crate::args::{Cli, CompletionsArgs, ManArgs};
 use crate::error::CliError;
-use crate::say_plain;
+use crate::stdout::say_plain;
 
 /// Name of the program.
 const NAME: &str = "simgap";

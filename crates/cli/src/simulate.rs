@@ -9,7 +9,7 @@ use simgap_record::write_csv_atomic;
 
 use crate::args::SimulateArgs;
 use crate::error::CliError;
-use crate::say;
+use crate::stdout::say;
 
 pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     not_an_input(&args.out, &[&args.model, &args.record])?;

@@ -6,7 +6,7 @@ use simgap_report::lines::wrap;
 /// Longest line, characters.
 pub(crate) const WIDTH: usize = 100;
 
-/// Colours are written freely; [`crate::say`] takes them out where no terminal shows them.
+/// Colours are written freely; [`crate::stdout::say`] takes them out where no terminal shows them.
 pub(crate) const STRONG: anstyle::Style = anstyle::Style::new().bold();
 /// What only names what follows.
 pub(crate) const FAINT: anstyle::Style = anstyle::Style::new().dimmed();

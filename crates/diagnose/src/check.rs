@@ -13,7 +13,7 @@ use crate::Gap;
 use crate::excerpt::excerpts;
 use crate::gap::{Prediction, closed_if_true, gap, predict, total};
 use crate::multi_step;
-use crate::pipeline::place_of;
+use crate::place::place_of;
 use crate::spread::spread_of_check;
 
 /// What is left of the gap, rms, from which an answer is incomplete.

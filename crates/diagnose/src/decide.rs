@@ -3,11 +3,11 @@
 use simgap_effects::Placed;
 use simgap_estimate::Start;
 use simgap_inference::{
-    CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, Search, model_posterior, name,
-    other,
+    CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, Search, is_nominal,
+    model_posterior, name, other,
 };
 
-use crate::pipeline::{Prepared, are_parameters};
+use crate::prepared::Prepared;
 use crate::{DiagnoseError, Status};
 
 /// The status is `unknown` where another cause is likelier than this.
@@ -117,4 +117,9 @@ fn small_errors(
     let others = first.nominal.iter().filter(|p| !named.contains(&name(p)));
     decision.start.nominal = others.cloned().collect::<Vec<Placed>>();
     Ok(())
+}
+
+/// Whether all of some effects are wrong nominal parameters.
+fn are_parameters<'a>(mut effects: impl Iterator<Item = &'a Placed>) -> bool {
+    effects.all(is_nominal)
 }

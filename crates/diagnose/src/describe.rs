@@ -11,7 +11,7 @@ use crate::diagnosis::{
     CandidateResult, ChannelShare, LocationShare, NamedEffect, NamedParameter, OtherCause, Rival,
     Status, Unexplained, Verdict,
 };
-use crate::pipeline::place_of;
+use crate::place::place_of;
 use crate::structure::describe;
 
 /// Probabilities that are stated: nothing is certain, and nothing that is named is impossible.

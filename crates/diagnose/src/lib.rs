@@ -73,6 +73,8 @@ mod multi_step;
 mod outcome;
 mod parity;
 mod pipeline;
+mod place;
+mod prepared;
 mod sets;
 mod spread;
 mod structure;

@@ -11,10 +11,8 @@ use std::borrow::Borrow;
 use simgap_effects::{Placed, catalogue};
 use simgap_estimate::{Cancel, Fit, FitOptions, Problem, Start, fit, fit_initial_states};
 use simgap_inference::noise_model::whitening;
-use simgap_inference::{
-    Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, is_nominal, recalibrate,
-};
-use simgap_model::{Location, Model};
+use simgap_inference::{Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, recalibrate};
+use simgap_model::Model;
 use simgap_record::{Defect, QualityFinding, Record};
 
 use crate::check::Check;
@@ -25,6 +23,7 @@ use crate::excerpt::excerpts;
 use crate::final_fit::fit_to_all;
 use crate::locate::Located;
 use crate::outcome::{corrected_model, series};
+use crate::prepared::Prepared;
 use crate::sets::{FittedSet, fitted_sets};
 use crate::{DiagnoseError, Status, describe, locate};
 
@@ -74,32 +73,6 @@ pub struct Outcome {
     pub motions: Vec<PlaceMotion>,
     /// Every set that was fitted, likeliest first, with the terms that decide: for replay and inspection.
     pub sets: Vec<FittedSet>,
-}
-
-/// Everything that is known before effects are looked for.
-pub(crate) struct Prepared {
-    /// All training records.
-    pub(crate) train: Problem,
-    /// The part of them that is searched in.
-    pub(crate) excerpt: Problem,
-    /// The model as given.
-    pub(crate) nominal: Fit,
-    /// With its nominal parameters re-estimated.
-    pub(crate) recalibrated: Fit,
-    /// Nominal parameters at their nominal values.
-    pub(crate) parameters: Vec<Placed>,
-}
-
-impl Prepared {
-    /// Minus the log-likelihood of re-estimated parameters under the given options.
-    fn misfit_of_parameters(&self, options: &FitOptions) -> f64 {
-        let held = FitOptions {
-            most_steps: 0,
-            ..options.clone()
-        };
-        let fitted = fit(&self.train, &self.recalibrated.estimate, &held);
-        fitted.map_or(f64::INFINITY, |fit| fit.misfit)
-    }
 }
 
 /// Diagnoses the gap between a model and records.
@@ -315,18 +288,4 @@ const FINE_LATTICE: usize = 4096;
 
 fn worth_a_note(finding: &QualityFinding) -> bool {
     !matches!(finding.defect, Defect::Quantised { levels, .. } if levels > FINE_LATTICE)
-}
-
-/// Whether all of some effects are wrong nominal parameters.
-pub(crate) fn are_parameters<'a>(mut effects: impl Iterator<Item = &'a Placed>) -> bool {
-    effects.all(is_nominal)
-}
-
-/// A place in words.
-pub(crate) fn place_of(output: &simgap_model::Output) -> Option<Location> {
-    match (&output.at, &output.between) {
-        (Some(at), _) => Some(Location::Mass(at.clone())),
-        (None, Some(pair)) => Some(Location::Between(pair.clone())),
-        (None, None) => None,
-    }
 }

@@ -3,7 +3,8 @@
 use simgap_integrate::exact::ForceLaw;
 use simgap_model::{Location, Model, NominalQuantity};
 
-use crate::prior::{Prior, usual_prior};
+pub use crate::parameter::Parameter;
+use crate::prior::{Prior, SIZE_LOG_STD};
 pub use crate::scale::{LINES, SiteScale};
 use crate::{Line, SignalMap, Wave};
 
@@ -60,92 +61,6 @@ pub enum SiteKind {
     Input,
     /// An output channel.
     Channel,
-}
-
-/// A parameter of an effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parameter {
-    /// Name in files, with the unit in it.
-    pub name: &'static str,
-    /// Unit, SI.
-    pub unit: &'static str,
-    /// Smallest physical value.
-    pub lower: f64,
-    /// Largest physical value.
-    pub upper: f64,
-    /// Value at which the effect vanishes, infinite for a limit that is never reached; `None` for a
-    /// parameter that only shapes it.
-    pub neutral: Option<f64>,
-    /// Whether every record has a value of its own: the phase of a clock, the state at the start.
-    pub per_record: bool,
-}
-
-impl Parameter {
-    /// A factor on a nominal value: not negative, without effect at one.
-    #[must_use]
-    pub const fn factor(name: &'static str) -> Parameter {
-        Parameter {
-            name,
-            unit: "1",
-            lower: 0.0,
-            upper: f64::INFINITY,
-            neutral: Some(1.0),
-            per_record: false,
-        }
-    }
-
-    /// A size: without effect at zero, of either sign unless bounded.
-    #[must_use]
-    pub const fn size(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Parameter {
-        Parameter {
-            name,
-            unit,
-            lower,
-            upper,
-            neutral: Some(0.0),
-            per_record: false,
-        }
-    }
-
-    /// A limit: without effect at infinity.
-    #[must_use]
-    pub const fn limit(name: &'static str, unit: &'static str) -> Parameter {
-        Parameter {
-            name,
-            unit,
-            lower: 0.0,
-            upper: f64::INFINITY,
-            neutral: Some(f64::INFINITY),
-            per_record: false,
-        }
-    }
-
-    /// A value that only shapes the effect.
-    #[must_use]
-    pub const fn shape(
-        name: &'static str,
-        unit: &'static str,
-        lower: f64,
-        upper: f64,
-    ) -> Parameter {
-        Parameter {
-            name,
-            unit,
-            lower,
-            upper,
-            neutral: None,
-            per_record: false,
-        }
-    }
-
-    /// A value that every record has of its own.
-    #[must_use]
-    pub const fn of_record(self) -> Parameter {
-        Parameter {
-            per_record: true,
-            ..self
-        }
-    }
 }
 
 /// An effect with a clock of its own: it is proportional to `amplitude · sin(2π f t + phase)`, each
@@ -394,4 +309,61 @@ pub trait Effect: Sync + Send {
 
     /// The experiment that shows this effect best against its rivals.
     fn experiment(&self) -> &'static str;
+}
+
+/// The prior of a parameter that follows from what the effect says of itself: a factor about one; a value of a record's
+/// own as large as the motion; a share even over its range; a size or a shape about its usual values.
+#[must_use]
+pub fn usual_prior(effect: &(impl Effect + ?Sized), place: usize, scale: &SiteScale) -> Prior {
+    let Some(parameter) = effect.parameters().get(place) else {
+        return Prior::size(1.0);
+    };
+    let is_positive = |value: f64| value > 0.0 && value.is_finite();
+    if parameter.per_record {
+        let Some(neutral) = parameter.neutral else {
+            return Prior::Uniform {
+                width: std::f64::consts::TAU,
+            };
+        };
+        let std = match parameter.unit {
+            "m" => scale.displacement_m,
+            "m/s" => scale.velocity_m_per_s,
+            _ => 1.0,
+        };
+        let std = if is_positive(std) { std } else { 1.0 };
+        return Prior::Normal { mean: neutral, std };
+    }
+    if parameter.neutral == Some(1.0) {
+        return Prior::factor();
+    }
+    let width = parameter.upper - parameter.lower;
+    if width.is_finite()
+        && (parameter.lower == 0.0 || parameter.lower < 0.0 && parameter.neutral.is_none())
+    {
+        return Prior::Uniform { width };
+    }
+    let has_no_sign =
+        parameter.lower == f64::NEG_INFINITY && parameter.neutral.is_none_or(f64::is_infinite);
+    if has_no_sign {
+        let [low, high] = scale.signal_range;
+        return Prior::Normal {
+            mean: 0.5 * (low + high),
+            std: (high - low).max(f64::MIN_POSITIVE),
+        };
+    }
+    let neutral = parameter.neutral.filter(|n| n.is_finite()).unwrap_or(0.0);
+    let usual = effect.usual(scale);
+    let logs = usual.iter().filter_map(|values| values.get(place));
+    let logs: Vec<f64> = logs
+        .map(|value| (value - neutral).abs())
+        .filter(|distance| is_positive(*distance))
+        .map(f64::ln)
+        .collect();
+    let count = logs.len().max(1) as f64;
+    let mean = logs.iter().sum::<f64>() / count;
+    let spread = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / count;
+    Prior::Size {
+        median: mean.exp(),
+        log_std: SIZE_LOG_STD.hypot(spread.sqrt()),
+    }
 }

@@ -27,6 +27,7 @@ mod error;
 mod free;
 mod kinds;
 mod line;
+mod parameter;
 mod place;
 mod prior;
 mod scale;
@@ -36,12 +37,13 @@ mod wave;
 pub use catalogue::{catalogue, find};
 pub use effect::{
     Action, Clock, Effect, Family, LINES, LawOfModel, ModelChange, Parameter, SiteKind, SiteScale,
+    usual_prior,
 };
 pub use equivalent::{Equivalent, equivalents, equivalents_beside, likelier_line};
 pub use error::EffectError;
 pub use free::{VELOCITY_NODES, find_law, free_laws};
 pub use line::Line;
 pub use place::{Placed, same_place, sites};
-pub use prior::{EXACT, LocalPrior, Prior, SLIPPED, SLIPS, Slip, slip_of, usual_prior};
+pub use prior::{EXACT, LocalPrior, Prior, SLIPPED, SLIPS, Slip, slip_of};
 pub use signal_map::{Sampled, SignalMap, most_beyond};
 pub use wave::Wave;

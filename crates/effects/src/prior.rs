@@ -1,6 +1,6 @@
 //! Prior distributions of the parameters of effects.
 //!
-//! Every parameter has one, proper and in proportion to what moves at its place ([`SiteScale`]). A distribution is used
+//! Every parameter has one, proper and in proportion to what moves at its place ([`crate::SiteScale`]). A distribution is used
 //! through its normal approximation in a coordinate u of the value in which it is near normal:
 //!
 //! ```text
@@ -18,10 +18,10 @@
 //!
 //! v₀ is the value at which the effect vanishes ([`Parameter::neutral`]).
 
-use crate::{Effect, Parameter, SiteScale};
+use crate::parameter::Parameter;
 
 /// Spread of a size in powers of e: 95 % of what is met lies within a factor of twenty of the typical size.
-const SIZE_LOG_STD: f64 = 1.5;
+pub(crate) const SIZE_LOG_STD: f64 = 1.5;
 /// Spread of a nominal value that is wrong: a factor of two is an everyday error.
 const FACTOR_LOG_STD: f64 = std::f64::consts::LN_2;
 /// Probability that a wrong gain is a slip of units or of the sign.
@@ -234,67 +234,10 @@ impl Prior {
     }
 }
 
-/// The prior of a parameter that follows from what the effect says of itself: a factor about one; a value of a record's
-/// own as large as the motion; a share even over its range; a size or a shape about its usual values.
-#[must_use]
-pub fn usual_prior(effect: &(impl Effect + ?Sized), place: usize, scale: &SiteScale) -> Prior {
-    let Some(parameter) = effect.parameters().get(place) else {
-        return Prior::size(1.0);
-    };
-    let is_positive = |value: f64| value > 0.0 && value.is_finite();
-    if parameter.per_record {
-        let Some(neutral) = parameter.neutral else {
-            return Prior::Uniform {
-                width: std::f64::consts::TAU,
-            };
-        };
-        let std = match parameter.unit {
-            "m" => scale.displacement_m,
-            "m/s" => scale.velocity_m_per_s,
-            _ => 1.0,
-        };
-        let std = if is_positive(std) { std } else { 1.0 };
-        return Prior::Normal { mean: neutral, std };
-    }
-    if parameter.neutral == Some(1.0) {
-        return Prior::factor();
-    }
-    let width = parameter.upper - parameter.lower;
-    if width.is_finite()
-        && (parameter.lower == 0.0 || parameter.lower < 0.0 && parameter.neutral.is_none())
-    {
-        return Prior::Uniform { width };
-    }
-    let has_no_sign =
-        parameter.lower == f64::NEG_INFINITY && parameter.neutral.is_none_or(f64::is_infinite);
-    if has_no_sign {
-        let [low, high] = scale.signal_range;
-        return Prior::Normal {
-            mean: 0.5 * (low + high),
-            std: (high - low).max(f64::MIN_POSITIVE),
-        };
-    }
-    let neutral = parameter.neutral.filter(|n| n.is_finite()).unwrap_or(0.0);
-    let usual = effect.usual(scale);
-    let logs = usual.iter().filter_map(|values| values.get(place));
-    let logs: Vec<f64> = logs
-        .map(|value| (value - neutral).abs())
-        .filter(|distance| is_positive(*distance))
-        .map(f64::ln)
-        .collect();
-    let count = logs.len().max(1) as f64;
-    let mean = logs.iter().sum::<f64>() / count;
-    let spread = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / count;
-    Prior::Size {
-        median: mean.exp(),
-        log_std: SIZE_LOG_STD.hypot(spread.sqrt()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::find;
+    use crate::{SiteScale, find};
 
     #[test]
     fn verify_a_size_is_log_normal() {

@@ -9,10 +9,11 @@ use simgap_simulate::{Job, predict_all};
 
 use crate::fit::{Known, Merit, fit_with};
 use crate::layout::{Freedom, Layout};
-use crate::linearise::{Linearised, Signals, discrepancy, linearise};
+use crate::linearise::{Linearised, discrepancy, linearise};
 use crate::normal::normal_equations;
 use crate::products::{inner, inner_products};
 use crate::reach::Reach;
+use crate::signals::Signals;
 use crate::{Candidate, EstimateError, Fit, FitOptions, Problem, Start};
 
 /// Columns that keep less than this of their energy past the nuisance are explained by it: a trial is not small enough

@@ -2,18 +2,7 @@
 
 use faer::Mat;
 
-use crate::layout::Layout;
-
-/// What a coordinate of a fit is a value of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Owner {
-    /// Of the i-th effect, the k-th parameter; of one record where records have values of their own.
-    Effect(usize, usize),
-    /// Of the i-th nominal parameter, the k-th value.
-    Nominal(usize, usize),
-    /// The initial state of a record.
-    State,
-}
+use crate::layout::{Layout, Owner};
 
 /// One number that a fit adjusts.
 #[derive(Debug, Clone, PartialEq)]

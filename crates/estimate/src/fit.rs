@@ -18,12 +18,11 @@ use simgap_simulate::LANES;
 
 use crate::curvature::Curvature;
 use crate::layout::{Freedom, Layout};
-use crate::linearise::{
-    Column, Linearised, Probe, Signals, complete, discrepancies_of, probe, reach,
-};
+use crate::linearise::{Column, Linearised, Probe, complete, discrepancies_of, probe, reach};
 use crate::normal::{damped_step, normal_equations, variances};
 use crate::products::dot;
 use crate::reach::Reach;
+use crate::signals::Signals;
 use crate::{EstimateError, FitOptions, Problem, Start};
 
 /// A parameter value with its 95 % interval.
@@ -400,32 +399,4 @@ impl<'a> Merit<'a> {
             .map(|(v, (floor, rho))| rho / (v + floor))
             .collect()
     }
-}
-
-/// Typical size of each entry of an initial state: what the outputs allow to guess, one elsewhere.
-pub(crate) fn state_scale(problem: &Problem) -> Vec<f64> {
-    let n = problem.model.dof_count();
-    let std = problem.motion_std();
-    let mut displacement = 0.0_f64;
-    for (output, std) in problem.model.outputs.iter().zip(&std) {
-        if output.kind == simgap_model::OutputKind::Displacement {
-            displacement = displacement.max(*std);
-        }
-    }
-    let step = problem.runs.first().map_or(1.0, |run| run.time_step_s);
-    let size = if displacement > 0.0 {
-        displacement
-    } else {
-        1e-3
-    };
-    let velocity = size / (100.0 * step);
-    // Coordinates that are no places are scaled to about one.
-    let own = problem.model.masses.iter();
-    let is_scaled: Vec<bool> = own.map(|m| problem.model.has_own_scale(&m.name)).collect();
-    let scale = |i: usize| match i {
-        i if is_scaled[i % n] => 1.0,
-        i if i < n => size,
-        _ => velocity,
-    };
-    (0..2 * n).map(scale).collect()
 }

@@ -2,34 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use simgap_effects::{Effect, Parameter, Placed, Prior};
-use simgap_model::Location;
+use simgap_effects::{Parameter, Placed, Prior};
 use simgap_simulate::Run;
 
-use crate::Problem;
-use crate::curvature::Owner;
-use crate::fit::state_scale;
-
-/// A catalogue entry at a place, without values.
-#[derive(Clone)]
-pub struct Candidate {
-    /// The entry.
-    pub effect: &'static dyn Effect,
-    /// The place.
-    pub at: Location,
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Candidate) -> bool {
-        self.effect.kind() == other.effect.kind() && self.at == other.at
-    }
-}
-
-impl std::fmt::Debug for Candidate {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {}", self.effect.kind(), self.at)
-    }
-}
+use crate::problem::{Problem, state_scale};
 
 /// Where a fit starts.
 #[derive(Clone)]
@@ -436,4 +412,15 @@ impl Layout {
             *value = value.clamp(*lower, *upper);
         }
     }
+}
+
+/// What a coordinate of a fit is a value of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Owner {
+    /// Of the i-th effect, the k-th parameter; of one record where records have values of their own.
+    Effect(usize, usize),
+    /// Of the i-th nominal parameter, the k-th value.
+    Nominal(usize, usize),
+    /// The initial state of a record.
+    State,
 }

@@ -67,6 +67,7 @@
 
 mod base;
 mod cancel;
+mod candidate;
 mod curvature;
 mod drift;
 mod fit;
@@ -80,17 +81,19 @@ mod problem;
 mod products;
 mod reach;
 mod score;
+mod signals;
 mod site;
 mod spread;
 mod whitening;
 
 pub use base::{Base, linearise_at};
 pub use cancel::Cancel;
-pub use curvature::{Coordinate, Curvature, Owner};
+pub use candidate::Candidate;
+pub use curvature::{Coordinate, Curvature};
 pub use fit::{Fit, Interval, fit};
 pub use initial::{fit_initial_states, fit_initial_states_from, simulator_at};
 pub use joint::{JointScore, joint_scores};
-pub use layout::{Candidate, Start};
+pub use layout::{Owner, Start};
 pub use outright::score_outright;
 pub use problem::{FitOptions, Problem};
 pub use score::{Score, score, score_shapes};

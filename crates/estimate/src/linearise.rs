@@ -8,15 +8,13 @@ use simgap_simulate::{Job, LANES, Simulator, predict_all};
 
 use crate::layout::Layout;
 use crate::reach::Reach;
+use crate::signals::Signals;
 use crate::{EstimateError, Problem};
 
 /// Relative size of a finite-difference step. A difference to one side is off by half of it times the curvature, 5e-4
 /// for a stiffness at 1e-4: where parameters nearly stand in for each other, steps along sensitivities so far off go
 /// nowhere. Rounding takes as little as 1e-7 of it, and with sticking friction not more.
 const DIFFERENCE: f64 = 1e-6;
-
-/// Signals of one run: one vector for each channel.
-pub(crate) type Signals = Vec<Vec<f64>>;
 
 /// The sensitivity of the signals of one run to one entry of θ; as long as the record, and shared by all
 /// fits that start at one point.

@@ -4,8 +4,9 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use crate::layout::Layout;
-use crate::linearise::{Linearised, Signals};
+use crate::linearise::Linearised;
 use crate::products::inner_products;
+use crate::signals::Signals;
 
 /// H = Jᵀ W J + prior, g = Jᵀ W r − prior gradient, in units of the scales.
 pub(crate) fn normal_equations(

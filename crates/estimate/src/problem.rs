@@ -6,7 +6,8 @@ use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue
 use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, Node, OutputKind, PRESSURE_UNIT_PA};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
-use crate::{Cancel, Candidate, EstimateError, Whitening};
+use crate::candidate::Candidate;
+use crate::{Cancel, EstimateError, Whitening};
 
 /// A nominal model and the runs it is compared with.
 pub struct Problem {
@@ -312,4 +313,32 @@ pub(crate) fn rms_about_mean<'a, I: Iterator<Item = &'a f64>>(values: impl Fn() 
     let mean = sum / count.max(1.0);
     let square: f64 = values().map(|value| (value - mean) * (value - mean)).sum();
     (square / count.max(1.0)).sqrt()
+}
+
+/// Typical size of each entry of an initial state: what the outputs allow to guess, one elsewhere.
+pub(crate) fn state_scale(problem: &Problem) -> Vec<f64> {
+    let n = problem.model.dof_count();
+    let std = problem.motion_std();
+    let mut displacement = 0.0_f64;
+    for (output, std) in problem.model.outputs.iter().zip(&std) {
+        if output.kind == OutputKind::Displacement {
+            displacement = displacement.max(*std);
+        }
+    }
+    let step = problem.runs.first().map_or(1.0, |run| run.time_step_s);
+    let size = if displacement > 0.0 {
+        displacement
+    } else {
+        1e-3
+    };
+    let velocity = size / (100.0 * step);
+    // Coordinates that are no places are scaled to about one.
+    let own = problem.model.masses.iter();
+    let is_scaled: Vec<bool> = own.map(|m| problem.model.has_own_scale(&m.name)).collect();
+    let scale = |i: usize| match i {
+        i if is_scaled[i % n] => 1.0,
+        i if i < n => size,
+        _ => velocity,
+    };
+    (0..2 * n).map(scale).collect()
 }

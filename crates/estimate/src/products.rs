@@ -6,7 +6,7 @@ use faer::Mat;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::linearise::Signals;
+use crate::signals::Signals;
 
 /// Running sums of one dot product: enough additions that do not wait for each other.
 const SUMS: usize = 32;

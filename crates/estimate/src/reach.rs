@@ -11,7 +11,7 @@ use simgap_effects::{Action, Placed, Sampled, most_beyond};
 use simgap_model::Location;
 
 use crate::Problem;
-use crate::linearise::Signals;
+use crate::signals::Signals;
 
 /// The samples within reach, by run and channel.
 pub(crate) struct Reach {

@@ -5,8 +5,6 @@ use std::collections::BTreeSet;
 use simgap_effects::{Family, Placed};
 use simgap_estimate::{Candidate, Fit, Owner, Score, Start};
 
-use crate::marginal_likelihood::NominalPrior;
-
 /// A fitted set of effects.
 #[derive(Clone)]
 pub struct CandidateModel {
@@ -174,4 +172,13 @@ pub(crate) fn prior_score(base: &CandidateModel, candidate: &Candidate) -> Optio
         start: placed.clone(),
         initial: None,
     })
+}
+
+/// Which prior a nominal parameter has that is an effect of a set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum NominalPrior {
+    /// It is wrong: that of its kind, off by a factor.
+    Wrong,
+    /// It is as right as the model states, by its standard deviation.
+    Stated(f64),
 }

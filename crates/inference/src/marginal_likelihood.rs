@@ -23,17 +23,10 @@ use simgap_effects::{LocalPrior, Placed, Prior, SiteScale};
 use simgap_estimate::{Coordinate, Fit, Owner};
 use simgap_model::Location;
 
+use crate::candidate_model::{NominalPrior, is_nominal};
+
 /// Standard deviation of the prior on an initial state, in units of its typical size.
 const STATE_STD: f64 = 10.0;
-
-/// Which prior a nominal parameter has that is an effect of a set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum NominalPrior {
-    /// It is wrong: that of its kind, off by a factor.
-    Wrong,
-    /// It is as right as the model states, by its standard deviation.
-    Stated(f64),
-}
 
 /// ln Z of (2); minus infinity where an effect has vanished, since the set is then a smaller one, and
 /// where its prior has no support.
@@ -105,7 +98,7 @@ fn term(
             let placed = effects.get(e)?;
             let parameter = placed.effect.parameters().get(i)?;
             let (prior, is_balanced) = match nominal {
-                NominalPrior::Stated(std) if crate::is_nominal(placed) => {
+                NominalPrior::Stated(std) if is_nominal(placed) => {
                     (Prior::Normal { mean: 1.0, std }, false)
                 }
                 _ => (placed.effect.prior(i, &scale_at(&placed.at)?), true),

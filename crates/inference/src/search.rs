@@ -20,8 +20,8 @@ use simgap_estimate::{
     Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
 };
 
-use crate::candidate_model::{CandidateModel, is_nominal, name, rank};
-use crate::marginal_likelihood::{NominalPrior, log_marginal_likelihood};
+use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
+use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
 use crate::noise_model::{NOISE_KNOWN, NoiseModel, noise_variance, rounding_variance, stepped};
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::body::{BodyFile, PointFile};
-use crate::check::item;
+use crate::body::file::{BodyFile, PointFile};
+use crate::refuse::item;
 use crate::{
     Beam, Block, Cylinder, Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError,
     Output, Pendulum, Spring, Valve,

@@ -55,6 +55,7 @@ mod modes;
 mod node;
 mod parameter;
 mod parts;
+mod refuse;
 mod sensitivity;
 mod serial;
 mod travel;
@@ -75,8 +76,8 @@ pub use modes::{
 pub use node::{BodyPoint, Node};
 pub use parameter::Parameter;
 pub use parts::{
-    Damper, EffectEntry, GROUND, Input, InputKind, Load, Location, Mass, Output, OutputKind,
-    Pendulum, Spring,
+    DEFAULT_UNCERTAINTY, Damper, EffectEntry, GROUND, Input, InputKind, Load, Location, Mass,
+    Output, OutputKind, Pendulum, Spring,
 };
 pub use sensitivity::{PoleSensitivity, pole_sensitivities, receptance_sensitivity};
-pub use uncertainty::{DEFAULT_UNCERTAINTY, NominalQuantity};
+pub use uncertainty::NominalQuantity;

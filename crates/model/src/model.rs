@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::check::item;
+use crate::refuse::item;
 use crate::{
     Beam, Block, Body, Cylinder, Damper, EffectEntry, GROUND, Input, InputKind, Load, Mass,
     ModelError, Node, Output, OutputKind, Pendulum, Spring, StructuralMatrices, Valve,

@@ -5,9 +5,6 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-#[cfg(doc)]
-use crate::DEFAULT_UNCERTAINTY;
-
 /// The node that never moves.
 pub const GROUND: &str = "ground";
 
@@ -193,3 +190,9 @@ pub struct EffectEntry {
     /// Parameters by name, SI units.
     pub parameters: BTreeMap<String, f64>,
 }
+
+/// Relative standard deviation of a nominal value whose part states no `uncertainty`.
+pub const DEFAULT_UNCERTAINTY: f64 = 0.02;
+
+/// Largest relative standard deviation that a part may state.
+pub(crate) const LARGEST_UNCERTAINTY: f64 = 10.0;

@@ -1,12 +1,7 @@
 //! How well the nominal values are known.
 
+use crate::parts::{DEFAULT_UNCERTAINTY, LARGEST_UNCERTAINTY};
 use crate::{Location, Model, same_pair};
-
-/// Relative standard deviation of a nominal value whose part states no `uncertainty`.
-pub const DEFAULT_UNCERTAINTY: f64 = 0.02;
-
-/// Largest relative standard deviation that a part may state.
-pub(crate) const LARGEST_UNCERTAINTY: f64 = 10.0;
 
 /// A kind of nominal value, by the place where parts of that kind add up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

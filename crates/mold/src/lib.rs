@@ -20,6 +20,7 @@
 //! ```
 
 mod beam;
+mod channel;
 mod error;
 mod heave_roll;
 mod leaves;
@@ -33,14 +34,14 @@ mod sweep;
 mod two_dof;
 
 pub use beam::{BeamEnds, LeafSpring};
+pub use channel::{DISPLACEMENT_CHANNEL, FORCE_CHANNEL};
 pub use error::MoldError;
 pub use heave_roll::{Cylinder, HeaveRoll};
 pub use leaves::{CondensedLeaf, MoldOnLeaves};
 pub use oil::LockedCylinder;
 pub use one_dof::{LEAF_CHANNEL, LeafEnd, OneDof, STANDARD_GRAVITY};
 pub use plan::{
-    DISPLACEMENT_CHANNEL, Derivative, FORCE_CHANNEL, HARMONIC_SHARE, Reading, RebuildPlan,
-    published_line_amplitude, published_plan,
+    Derivative, HARMONIC_SHARE, Reading, RebuildPlan, published_line_amplitude, published_plan,
 };
 pub use rebuild::{RebuiltRecord, rebuild};
 pub use sweep::{SweepPlan, SweepRecord, published_sweep, rebuild_sweep};

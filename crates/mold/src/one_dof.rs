@@ -7,8 +7,8 @@ use simgap_model::{
 };
 
 use crate::MoldError;
+use crate::channel::{DISPLACEMENT_CHANNEL, FORCE_CHANNEL};
 use crate::error::{not_negative, positive};
-use crate::plan::{DISPLACEMENT_CHANNEL, FORCE_CHANNEL};
 
 /// Standard gravity, m/s² (exact by definition; `bipm-si`). The paper does not print its g.
 pub const STANDARD_GRAVITY: f64 = 9.806_65;

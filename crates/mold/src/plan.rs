@@ -5,12 +5,6 @@ use simgap_integrate::inverse::{Differentiator, exact_transfer, transfer};
 use crate::error::{not_negative, positive};
 use crate::{MoldError, OneDof};
 
-/// Channel of the pressure force, N.
-pub const FORCE_CHANNEL: &str = "F_pressure";
-
-/// Channel of the mold displacement, m.
-pub const DISPLACEMENT_CHANNEL: &str = "y";
-
 /// Amplitude of the n-th harmonic of the displacement over n⁻² of the fundamental. Table 2 prints
 /// which lines there are and not how high; 1 % is **assumed**, low enough to leave the 2 mm
 /// stroke as it is and high enough to be seen in a spectrum.

@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use simgap_record::{Channel, Record};
 
+use crate::channel::{DISPLACEMENT_CHANNEL, FORCE_CHANNEL};
 use crate::noise::Normal;
-use crate::plan::{DISPLACEMENT_CHANNEL, FORCE_CHANNEL, check, force_per_displacement};
+use crate::plan::{check, force_per_displacement};
 use crate::{MoldError, OneDof, Reading, RebuildPlan, STANDARD_GRAVITY};
 
 /// A record that follows a plan, with the statement that it was not measured.

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use simgap_record::{Channel, Record};
 
+use crate::channel::{DISPLACEMENT_CHANNEL, FORCE_CHANNEL};
 use crate::error::{not_negative, positive};
-use crate::plan::{DISPLACEMENT_CHANNEL, FORCE_CHANNEL};
 use crate::{MoldError, OneDof, STANDARD_GRAVITY};
 
 /// What a rebuilt sweep follows,

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
 use crate::RecordError;
-use crate::write::{checked_csv, new_file_in, parent};
+use crate::csv_write::checked_csv;
+use crate::new_file::{new_file_in, parent};
 
 /// Symbolic links that lead to a file, one after the other.
 const MOST_LINKS: usize = 40;

@@ -6,13 +6,14 @@
 //! them. Then the choice is the user's.
 
 use crate::Unit;
-use crate::error::{RecordError, digits, shortened};
+use crate::error::RecordError;
 use crate::faults::SelectionFault;
+use crate::heading::Heading;
 use crate::map::ChannelMap;
 use crate::note::Note;
 use crate::resample::usual_step;
-use crate::select::Heading;
 use crate::time_names::unit_in_name;
+use crate::words::{digits, shortened};
 
 /// Seconds since 1970 of the years 2000 and 2100, and of 2100 in seconds since 1904.
 const FROM_2000: f64 = 946_684_800.0;

@@ -1,7 +1,8 @@
 //! The header line: which column is what.
 
 use crate::Unit;
-use crate::error::{Place, RecordError, name_list, shortened};
+use crate::error::{Place, RecordError};
+use crate::words::{name_list, shortened};
 
 /// A column that is read.
 #[derive(Debug, Clone, PartialEq)]

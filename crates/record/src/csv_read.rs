@@ -5,16 +5,12 @@ use std::path::Path;
 
 use crate::Channel;
 use crate::csv_header::{Header, Wanted, check_separator, parse_header};
-use crate::error::{Place, RecordError, shortened};
-use crate::open::opened;
+use crate::error::{Place, RecordError};
+use crate::file::{BUFFER_BYTES, opened};
+use crate::limits::{MAX_LINE_BYTES, MAX_ROWS};
 use crate::record::{Origin, Record};
+use crate::words::shortened;
 
-/// Most rows that are read: 80 minutes at 1 kHz. Reading stops there.
-pub const MAX_ROWS: usize = 5_000_000;
-/// Longest line that is read, bytes. Keeps a file without line ends out of memory.
-pub const MAX_LINE_BYTES: usize = 1 << 20;
-/// Bytes asked from the system at once.
-pub(crate) const BUFFER_BYTES: usize = 1 << 17;
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Reads a record from a CSV file.

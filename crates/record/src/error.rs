@@ -5,6 +5,7 @@ use std::io;
 use crate::faults::{FormatFault, MapFault, MendFault, SelectionFault, TextFault};
 pub use crate::place::Place;
 use crate::place::mending;
+use crate::words::digits;
 use crate::{Format, MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS, Quantity, UNEVEN_FRACTION, UnitKind};
 
 /// Why a record cannot be read, made or written. Each message is one line: file, line or column,
@@ -386,42 +387,4 @@ fn misfit(unit: &str, kind: UnitKind, wanted: Quantity) -> String {
     format!(
         "is in [{unit}], which is {kind}, but {wanted} is needed ({examples}), or a gain in the model"
     )
-}
-
-/// A number with the digits that matter in a message.
-pub(crate) fn digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
-}
-
-/// Names as a list for a message; a long list is cut.
-pub(crate) fn name_list<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    const SHOWN: usize = 12;
-    let names: Vec<&str> = names.collect();
-    if names.is_empty() {
-        return "no others".to_owned();
-    }
-    let mut list = names
-        .iter()
-        .take(SHOWN)
-        .map(|name| format!("'{}'", shortened(name)))
-        .collect::<Vec<_>>()
-        .join(", ");
-    if names.len() > SHOWN {
-        list += &format!(" and {} more", names.len() - SHOWN);
-    }
-    list
-}
-
-/// Text from a file as it may stand in a message: one line, not too long.
-pub(crate) fn shortened(text: &str) -> String {
-    const SHOWN: usize = 40;
-    let mut short: String = text
-        .chars()
-        .take(SHOWN)
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    if text.chars().nth(SHOWN).is_some() {
-        short.push('…');
-    }
-    short
 }

@@ -1,7 +1,8 @@
 //! What can be wrong with files of loggers and measurement programs: the parts of
 //! [`crate::RecordError`] that belong to one step of reading each.
 
-use crate::error::{Place, digits};
+use crate::place::Place;
+use crate::words::digits;
 
 /// What is wrong with a channel map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

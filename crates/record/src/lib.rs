@@ -44,8 +44,10 @@ mod clock;
 mod columnar;
 mod csv_header;
 mod csv_read;
+mod csv_write;
 mod error;
 mod faults;
+mod file;
 mod fill;
 #[cfg(any(
     feature = "arrow",
@@ -73,6 +75,8 @@ mod hdf5_cells;
 mod hdf5_newest;
 #[cfg(feature = "matlab73")]
 mod hdf5_types;
+mod heading;
+mod limits;
 mod logger;
 mod map;
 mod mat5;
@@ -81,6 +85,7 @@ mod mat_objects;
 mod mdf;
 mod mend;
 mod mended;
+mod new_file;
 mod note;
 mod open;
 mod overload;
@@ -97,6 +102,7 @@ mod time_names;
 mod uff;
 mod uff_lines;
 mod unit;
+mod words;
 mod write;
 #[cfg(feature = "xlsx")]
 mod xlsx;
@@ -105,17 +111,16 @@ mod zip_size;
 
 pub use batch::{Batch, ensure_replaceable};
 pub use channel::{Channel, Conversion};
-pub use csv_read::{
-    MAX_LINE_BYTES, MAX_ROWS, parse_csv, read_csv, read_csv_channels, read_csv_some,
-};
+pub use csv_read::{parse_csv, read_csv, read_csv_channels, read_csv_some};
 pub use error::{Place, RecordError};
 pub use faults::{FormatFault, MapFault, MendFault, SelectionFault, TextFault};
 pub use format::Format;
+pub use limits::{MAX_FILE_BYTES, MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS};
 pub use map::{ChannelMap, MapEntry};
 pub use note::Note;
-pub use open::{MAX_FILE_BYTES, parse_file, read_file};
+pub use open::{parse_file, read_file};
 pub use quality::{Defect, Edge, QualityFinding, quality};
-pub use record::{MIN_ROWS, Record};
+pub use record::Record;
 pub use same::{AuditFinding, AuditTopic, audit, found_within};
 pub use select::{Mend, ReadOptions, Reading};
 pub use time_base::UNEVEN_FRACTION;

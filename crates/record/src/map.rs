@@ -1,7 +1,7 @@
 //! Which column of a file is which channel of the model.
 
-use crate::error::{name_list, shortened};
 use crate::faults::MapFault;
+use crate::words::{name_list, shortened};
 
 /// Name of the time base in a map: `t=Zeit`.
 const TIME: &str = "t";

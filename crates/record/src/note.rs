@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::error::{digits, name_list, shortened};
+use crate::words::{digits, name_list, shortened};
 
 /// Something that was not in the file, or not as it stands there. One sentence each.
 #[derive(Debug, Clone, PartialEq)]

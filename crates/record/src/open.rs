@@ -1,14 +1,14 @@
 //! One entry for files of every format.
 
 use std::borrow::Cow;
-use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 use crate::csv_header::Wanted;
-use crate::csv_read::{BUFFER_BYTES, Reader};
+use crate::csv_read::Reader;
 use crate::error::RecordError;
 use crate::faults::FormatFault;
+use crate::file::{BUFFER_BYTES, all_bytes, opened};
 use crate::format::Format;
 use crate::logger::{self, starts_by_contract};
 use crate::note::Note;
@@ -16,9 +16,6 @@ use crate::raw::{Raw, assemble};
 use crate::select::{Mend, ReadOptions, Reading};
 use crate::{arrays, mat5, tdms, uff};
 
-/// No file but a CSV of the contract's own form is read that is longer: such a file is held in
-/// memory whole.
-pub const MAX_FILE_BYTES: u64 = 1 << 30;
 /// As many bytes tell the format.
 const HEAD_BYTES: usize = 1 << 16;
 
@@ -229,44 +226,4 @@ fn second_look(
         Ok(reading) if options.wanted.is_none() || reading.has_later_header() => Ok(reading),
         _ => Err(error),
     }
-}
-
-/// The file, opened, and its name without the folders.
-pub(crate) fn opened(path: &Path, label: &str) -> Result<(File, String), RecordError> {
-    let refused = |source: io::Error| match source.kind() {
-        io::ErrorKind::NotFound => RecordError::NotFound {
-            file: label.to_owned(),
-        },
-        _ => RecordError::Unreadable {
-            file: label.to_owned(),
-            source,
-        },
-    };
-    let file = File::open(path).map_err(refused)?;
-    if file.metadata().map_err(refused)?.is_dir() {
-        return Err(RecordError::IsDirectory {
-            file: label.to_owned(),
-        });
-    }
-    let name = path
-        .file_name()
-        .map_or_else(|| label.to_owned(), |n| n.to_string_lossy().into_owned());
-    Ok((file, name))
-}
-
-fn all_bytes(file: impl Read, label: &str) -> Result<Vec<u8>, RecordError> {
-    let mut bytes = Vec::new();
-    file.take(MAX_FILE_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|source| RecordError::Unreadable {
-            file: label.to_owned(),
-            source,
-        })?;
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(RecordError::TooLarge {
-            file: label.to_owned(),
-            most: MAX_FILE_BYTES,
-        });
-    }
-    Ok(bytes)
 }

@@ -2,13 +2,14 @@
 
 use crate::base::{self, Base, shared_rows};
 use crate::clock::{Stamps, clocked};
-use crate::error::{Place, RecordError, name_list, shortened};
+use crate::error::{Place, RecordError};
 use crate::faults::{FormatFault, SelectionFault};
-use crate::logger::heading;
+use crate::heading::{Heading, heading};
 use crate::mend::{Columns, finish};
 use crate::note::Note;
 use crate::record::Origin;
-use crate::select::{Heading, Pick, ReadOptions, Reading, select, time_column};
+use crate::select::{Pick, ReadOptions, Reading, select, time_column};
+use crate::words::{name_list, shortened};
 use crate::{Channel, MAX_ROWS, MIN_ROWS, Unit, UnitKind};
 
 /// A column that only looks like time is even to this share of its step.

@@ -5,15 +5,14 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::channel::{Channel, Conversion};
-use crate::error::{Place, RecordError, name_list, shortened};
+use crate::error::{Place, RecordError};
 use crate::faults::{MendFault, SelectionFault};
+use crate::limits::{MAX_ROWS, MIN_ROWS};
 use crate::mended::Mended;
 use crate::overload::is_mark;
 use crate::time_base::{TimeFault, check_even};
+use crate::words::{name_list, shortened};
 use crate::{Quantity, Unit, UnitKind};
-
-/// Fewest rows a record may have: with less, nothing of a motion can be told.
-pub const MIN_ROWS: usize = 8;
 
 /// A measured or generated record: channels of equal length over an evenly spaced time base.
 ///
@@ -352,7 +351,7 @@ fn checked_step(
             found: time_s.len(),
         });
     }
-    if time_s.len() > crate::MAX_ROWS {
+    if time_s.len() > MAX_ROWS {
         return Err(RecordError::TooManyRows { file: file() });
     }
     check_names(origin, channels)?;

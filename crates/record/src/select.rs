@@ -1,11 +1,12 @@
 //! What is read of a file: options, and the columns they pick.
 
-use crate::error::{RecordError, name_list, shortened};
+use crate::error::RecordError;
 use crate::faults::{MapFault, SelectionFault};
-use crate::logger::heading;
+use crate::heading::{Heading, heading};
 use crate::map::{ChannelMap, near_names};
 use crate::note::Note;
 use crate::time_names::{is_time_name, is_unit_name};
+use crate::words::{name_list, shortened};
 use crate::{Record, Unit};
 
 /// When faults of a record are made good instead of refused.
@@ -124,25 +125,6 @@ impl Reading {
     pub(crate) fn has_later_header(&self) -> bool {
         let later = |note: &Note| matches!(note, Note::Dialect { header, .. } if *header > 1);
         self.notes.iter().any(later)
-    }
-}
-
-/// A column of a file.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(crate) struct Heading {
-    pub(crate) name: String,
-    /// Empty if the file has none.
-    pub(crate) unit: String,
-}
-
-impl Heading {
-    /// Control characters become spaces, so that a name never breaks a message.
-    pub(crate) fn new(name: &str, unit: &str) -> Heading {
-        let plain = |text: &str| text.trim().replace(char::is_control, " ");
-        Heading {
-            name: plain(name),
-            unit: plain(unit),
-        }
     }
 }
 

@@ -176,7 +176,7 @@ impl Description {
         let at = |k: usize| Place::Line(first_line + k as u64);
         let fault = |k: usize, needed| FormatFault::Malformed {
             at: at(k),
-            found: format!("'{}'", crate::error::shortened(text[k].trim())),
+            found: format!("'{}'", crate::words::shortened(text[k].trim())),
             needed,
         };
         let words = |k: usize| text[k].split_whitespace().collect::<Vec<_>>();
@@ -265,7 +265,7 @@ impl Binary {
         let words: Vec<&str> = rest.split_whitespace().collect();
         let fault = || FormatFault::Malformed {
             at: Place::Line(lines.line),
-            found: format!("'{}'", crate::error::shortened(number.trim())),
+            found: format!("'{}'", crate::words::shortened(number.trim())),
             needed: "58b, order of bytes, format of numbers, 11 lines, number of bytes",
         };
         let order: u32 = word(&words, 0).ok_or_else(fault)?;

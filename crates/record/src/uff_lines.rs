@@ -86,7 +86,7 @@ impl<'a> Lines<'a> {
             for word in apart(&line) {
                 let number = fortran(word).ok_or_else(|| FormatFault::Malformed {
                     at: Place::Line(self.line),
-                    found: format!("'{}'", crate::error::shortened(word)),
+                    found: format!("'{}'", crate::words::shortened(word)),
                     needed: "a number",
                 })?;
                 numbers.push(number);

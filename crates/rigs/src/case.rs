@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use crate::accept::accepted;
 use crate::bench::{Bench, draw_setup, shapes_for};
 use crate::chain::Noise;
+use crate::draft::Draft;
 use crate::effect::Effect;
 use crate::families::{FAMILIES, draw_plant};
 use crate::plan::{Filter, Role, Wanted, wanted};
@@ -47,20 +48,6 @@ pub enum RigError {
         /// Tries.
         tries: usize,
     },
-}
-
-/// What is known of a case while it is drawn.
-pub(crate) struct Draft {
-    pub(crate) nominal: Plant,
-    pub(crate) bench: Bench,
-    pub(crate) effects: Vec<Effect>,
-    /// True factor of a parameter and the channel gap it causes, for wrong nominal parameters.
-    pub(crate) wrong: Vec<Effect>,
-    /// Small errors of the nominal parameters.
-    pub(crate) deviations: Vec<Effect>,
-    pub(crate) gap: f64,
-    /// Largest gap of each channel over the records.
-    pub(crate) gaps: Vec<f64>,
 }
 
 /// Draws a case.

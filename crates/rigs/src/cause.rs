@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::bench::Bench;
-use crate::case::Draft;
 use crate::deviate::{apply, error};
+use crate::draft::Draft;
 use crate::effect::Effect;
 use crate::kinds::{PARAMETERS, group, sites, template};
 use crate::march::Run;

@@ -1,7 +1,7 @@
 //! Faults of the measurement chain by size.
 
-use crate::kinds::{Scale, Template};
 use crate::rng::Rng;
+use crate::size::{Scale, Template};
 
 /// Draws the shape of a fault and leaves its size open.
 pub(crate) fn template(kind: &'static str, scale: &Scale, rng: &mut Rng) -> Template {

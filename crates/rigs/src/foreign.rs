@@ -1,7 +1,7 @@
 //! Laws that the catalogue lacks, by size.
 
-use crate::kinds::{Scale, Template};
 use crate::rng::Rng;
+use crate::size::{Scale, Template};
 
 /// Draws the shape of a law and leaves its size open.
 pub(crate) fn template(kind: &'static str, scale: &Scale, rng: &mut Rng) -> Template {

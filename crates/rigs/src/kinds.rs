@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use crate::plant::{Node, Place, Plant};
 use crate::rng::Rng;
+pub use crate::size::{Scale, Template, Values};
 
 /// Kinds of the catalogue but for the nominal parameters.
 pub const EFFECTS: [&str; 34] = [
@@ -140,35 +141,6 @@ pub fn at_channel(kind: &str) -> bool {
     chain.clone().any(|k| *k == kind)
         || matches!(kind, "foreign_sensor_curve" | "sensor_not_connected")
 }
-
-/// How large the motion is at a place without the effect.
-#[derive(Debug, Clone, Copy)]
-pub struct Scale {
-    /// Root mean square of the signal: displacement across, reading or input.
-    pub rms: f64,
-    /// Lowest and highest value.
-    pub range: (f64, f64),
-    /// Root mean square of its rate.
-    pub rate: f64,
-    /// Typical force at the place.
-    pub force: f64,
-    /// Stiffness of the springs there, or of the plant.
-    pub stiffness: f64,
-    /// Mass there.
-    pub mass: f64,
-    /// s.
-    pub duration_s: f64,
-    /// s.
-    pub step_s: f64,
-    /// Hz.
-    pub band_hz: (f64, f64),
-}
-
-/// Values by name.
-pub type Values = Vec<(&'static str, f64)>;
-
-/// Values for any size from about 0.01 (hardly there) to 1 (dominant).
-pub type Template = Box<dyn Fn(f64) -> Values>;
 
 /// Draws the shape of an effect and leaves its size open.
 #[must_use]

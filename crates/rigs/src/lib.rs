@@ -12,6 +12,7 @@ pub mod case;
 mod cause;
 pub mod chain;
 mod deviate;
+mod draft;
 pub mod effect;
 pub mod excite;
 pub mod families;
@@ -30,6 +31,7 @@ mod records;
 pub mod rng;
 mod scale;
 pub mod score;
+mod size;
 pub mod truth;
 
 pub use answer::Diagnosis;

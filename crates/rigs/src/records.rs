@@ -1,8 +1,8 @@
 //! Records as files.
 
 use crate::bench::{Bench, deviation};
-use crate::case::Draft;
 use crate::chain::Noise;
+use crate::draft::Draft;
 use crate::effect::Effect;
 use crate::march::KEPT;
 use crate::rng::Rng;

@@ -1,9 +1,9 @@
 //! How large the motion is at a place.
 
 use crate::bench::{Bench, deviation};
-use crate::kinds::Scale;
 use crate::march::{KEPT, Run};
 use crate::plant::{Node, Place};
+use crate::size::Scale;
 
 fn rms(y: &[f64]) -> f64 {
     (y.iter().map(|v| v * v).sum::<f64>() / y.len().max(1) as f64).sqrt()

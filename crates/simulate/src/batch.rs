@@ -8,7 +8,8 @@ use simgap_integrate::exact::Excitation;
 use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSet, LaneSnapshot, Pack};
 
 use crate::outputs::{LaneBase, OutputPlan};
-use crate::prepare::{Prepared, Workshop};
+use crate::prepare::Workshop;
+use crate::prepared::Prepared;
 use crate::{Run, SimulateError, Simulator};
 
 /// One simulation of many.

@@ -1,9 +1,6 @@
 //! What drives the plant: forces on the masses and motion of the bases, sample by sample.
 
-use simgap_effects::Sampled;
-use simgap_model::{InputKind, Node};
-
-use crate::{Run, SimulateError, Simulator};
+use crate::Run;
 
 /// Forces on the masses and motion of the bases, samples × masses or bases, row-major.
 #[derive(Default)]
@@ -23,137 +20,22 @@ pub(crate) struct Drive {
 #[derive(PartialEq)]
 pub(crate) struct DriveKey<'a> {
     /// Runs are told apart by where they are.
-    run: *const Run,
-    input_effects: &'a [(&'static str, Vec<f64>)],
-    mapped_inputs: Vec<usize>,
-    input_terms: Vec<Vec<(usize, f64)>>,
-    loads: &'a [f64],
-    couplings: Vec<Coupling>,
+    pub(crate) run: *const Run,
+    pub(crate) input_effects: &'a [(&'static str, Vec<f64>)],
+    pub(crate) mapped_inputs: Vec<usize>,
+    pub(crate) input_terms: Vec<Vec<(usize, f64)>>,
+    pub(crate) loads: &'a [f64],
+    pub(crate) couplings: Vec<Coupling>,
 }
 
 /// A spring or damper between a mass and a moving base.
 #[derive(Clone, Copy, PartialEq)]
-struct Coupling {
-    dof: usize,
-    base: usize,
+pub(crate) struct Coupling {
+    pub(crate) dof: usize,
+    pub(crate) base: usize,
     /// Zero: to the displacement; one: to the velocity; two: to the acceleration.
-    order: usize,
-    coefficient: f64,
-}
-
-impl Simulator {
-    pub(crate) fn drive_key<'a>(&'a self, run: &Run) -> Result<DriveKey<'a>, SimulateError> {
-        Ok(DriveKey {
-            run,
-            input_effects: &self.input_effects,
-            mapped_inputs: self.input_maps.iter().map(|(input, _)| *input).collect(),
-            input_terms: {
-                let inputs = 0..self.model.inputs.len();
-                let terms = inputs.map(|i| self.model.input_terms(i));
-                terms.collect::<Result<_, _>>()?
-            },
-            loads: &self.loads,
-            couplings: self.couplings()?,
-        })
-    }
-
-    /// Forces on the masses and motion of the bases, sample by sample.
-    pub(crate) fn drive(&self, run: &Run) -> Result<Drive, SimulateError> {
-        let n = self.model.dof_count();
-        let mut inputs: Vec<std::borrow::Cow<'_, [f64]>> = run
-            .inputs
-            .iter()
-            .map(|signal| signal.as_slice().into())
-            .collect();
-        for (input, map) in &self.input_maps {
-            let signal = Sampled {
-                values: &inputs[*input],
-                time_step_s: run.time_step_s,
-                first_index: run.first_index,
-                start_s: run.start_s,
-                measured: None,
-            };
-            inputs[*input] = map.apply(signal).into();
-        }
-        let mut drive = Drive {
-            dof_force: Vec::with_capacity(run.len * n),
-            ..Drive::default()
-        };
-        for _ in 0..run.len {
-            drive.dof_force.extend_from_slice(&self.loads);
-        }
-        let base_inputs: Vec<usize> = (0..inputs.len())
-            .filter(|&i| self.model.inputs[i].kind == InputKind::Displacement)
-            .collect();
-        drive.base_count = base_inputs.len();
-        for (i, signal) in inputs.iter().enumerate() {
-            for (dof, weight) in self.model.input_terms(i)? {
-                for (sample, value) in signal.iter().enumerate() {
-                    drive.dof_force[sample * n + dof] += weight * value;
-                }
-            }
-        }
-        let motion: Vec<[Vec<f64>; 3]> = base_inputs
-            .iter()
-            .map(|&i| {
-                let velocity = derivative(&inputs[i], run.time_step_s);
-                let acceleration = derivative(&velocity, run.time_step_s);
-                [inputs[i].to_vec(), velocity, acceleration]
-            })
-            .collect();
-        let interleave = |k: usize| -> Vec<f64> {
-            let samples = if motion.is_empty() { 0 } else { run.len };
-            (0..samples)
-                .flat_map(|s| motion.iter().map(move |base| base[k][s]))
-                .collect()
-        };
-        drive.base_displacement = interleave(0);
-        drive.base_velocity = interleave(1);
-        drive.base_acceleration = interleave(2);
-        for coupling in self.couplings()? {
-            let motion = &motion[coupling.base][coupling.order];
-            for (sample, value) in motion.iter().enumerate() {
-                drive.dof_force[sample * n + coupling.dof] += coupling.coefficient * value;
-            }
-        }
-        drive.beyond = straighten(&mut drive.dof_force, n);
-        Ok(drive)
-    }
-
-    /// Springs, dampers and beams to moving bases: they do k b + c ḃ − m b̈ to the coordinates.
-    fn couplings(&self) -> Result<Vec<Coupling>, SimulateError> {
-        let springs = self
-            .model
-            .springs
-            .iter()
-            .map(|s| (&s.between, 0, s.stiffness));
-        let dampers = self
-            .model
-            .dampers
-            .iter()
-            .map(|d| (&d.between, 1, d.damping));
-        let mut couplings = Vec::new();
-        for (between, order, coefficient) in springs.chain(dampers) {
-            let pair = self.model.resolve_pair(between, || "member".into())?;
-            let ([other, Node::Base(base)] | [Node::Base(base), other]) = pair else {
-                continue;
-            };
-            couplings.extend(other.terms().map(|(dof, weight)| Coupling {
-                dof,
-                base,
-                order,
-                coefficient: weight * coefficient,
-            }));
-        }
-        let inertia = self.model.base_inertia().into_iter();
-        couplings.extend(inertia.map(|(dof, base, mass)| Coupling {
-            dof,
-            base,
-            order: 2,
-            coefficient: -mass,
-        }));
-        Ok(couplings)
-    }
+    pub(crate) order: usize,
+    pub(crate) coefficient: f64,
 }
 
 /// Replaces sampled forces on n masses by those whose straight lines push as the smooth curve through the
@@ -168,7 +50,7 @@ impl Simulator {
 ///
 /// off by 0.01 % at ten samples a cycle, where straight lines lose 3 %. Of a pulse, the sum and the first
 /// moment of what is taken away are zero. The last two samples at each end stay as they are.
-fn straighten(force: &mut [f64], n: usize) -> Vec<(usize, Vec<f64>)> {
+pub(crate) fn straighten(force: &mut [f64], n: usize) -> Vec<(usize, Vec<f64>)> {
     let mut beyond = Vec::new();
     for dof in 0..n {
         let of_dof: Vec<f64> = force.iter().skip(dof).step_by(n).copied().collect();
@@ -199,7 +81,7 @@ fn straighten(force: &mut [f64], n: usize) -> Vec<(usize, Vec<f64>)> {
 ///
 /// and one-sided formulas of the same order at the ends. A difference within the rounding of its terms is
 /// none: what pauses is at rest.
-fn derivative(signal: &[f64], step: f64) -> Vec<f64> {
+pub(crate) fn derivative(signal: &[f64], step: f64) -> Vec<f64> {
     let n = signal.len();
     if n < 5 {
         return (0..n)

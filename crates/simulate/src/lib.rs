@@ -55,10 +55,13 @@
 
 mod batch;
 mod drive;
+mod driven;
 mod error;
 mod orifice;
 mod outputs;
+mod predict;
 mod prepare;
+mod prepared;
 mod run;
 mod simulator;
 mod step;

@@ -4,7 +4,7 @@ use simgap_integrate::exact::lanes::{LANES, LaneSnapshot, Pack};
 use simgap_integrate::exact::{Element, Snapshot};
 use simgap_model::{Cylinder, Model, ModelError, Node, OutputKind, PRESSURE_UNIT_PA};
 
-use crate::prepare::Prepared;
+use crate::prepared::Prepared;
 
 /// How one output is read off a sample.
 pub(crate) struct OutputPlan {

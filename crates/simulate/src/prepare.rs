@@ -8,15 +8,8 @@ use simgap_integrate::exact::ExactPropagator;
 use simgap_model::StructuralMatrices;
 
 use crate::drive::{Drive, DriveKey};
+use crate::prepared::Prepared;
 use crate::{Run, SimulateError, Simulator};
-
-/// A simulation ready to be marched.
-pub(crate) struct Prepared {
-    pub(crate) propagator: Arc<ExactPropagator>,
-    pub(crate) drive: Arc<Drive>,
-    pub(crate) displacement: Vec<f64>,
-    pub(crate) velocity: Vec<f64>,
-}
 
 /// What has been prepared already.
 #[derive(Default)]

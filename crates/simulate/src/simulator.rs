@@ -2,14 +2,12 @@
 
 use std::borrow::Cow;
 
-use simgap_effects::{Action, Placed, Sampled, SignalMap};
-use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, Snapshot};
+use simgap_effects::{Action, Placed, SignalMap};
+use simgap_integrate::exact::{Element, ForceLaw, MemberMotion};
 use simgap_model::{Location, Model, Node, same_pair};
 
-use crate::batch::excitation;
 use crate::orifice::orifices;
-use crate::outputs::{BaseMotion, OutputPlan, across, output_plans};
-use crate::prepare::{Prepared, Workshop};
+use crate::outputs::{OutputPlan, output_plans};
 use crate::{Run, SimulateError};
 
 /// A model with its effects.
@@ -19,7 +17,7 @@ pub struct Simulator {
     pub(crate) input_maps: Vec<(usize, Box<dyn SignalMap>)>,
     /// Kind and values of the effects behind the input maps.
     pub(crate) input_effects: Vec<(&'static str, Vec<f64>)>,
-    output_maps: Vec<(usize, Box<dyn SignalMap>)>,
+    pub(crate) output_maps: Vec<(usize, Box<dyn SignalMap>)>,
     pub(crate) outputs: Vec<OutputPlan>,
     pub(crate) loads: Vec<f64>,
     pub(crate) substeps: usize,
@@ -179,189 +177,6 @@ impl Simulator {
     pub fn is_stepped(&self) -> bool {
         self.output_maps.iter().any(|(_, map)| map.is_stepped())
     }
-
-    /// Predicts every output along a run from an initial state (displacements, then velocities;
-    /// missing entries are zero). One signal for each output, in model units.
-    ///
-    /// # Errors
-    /// [`SimulateError::Model`] when the model cannot be propagated.
-    pub fn predict(&self, run: &Run, initial: &[f64]) -> Result<Vec<Vec<f64>>, SimulateError> {
-        self.predict_through(run, initial, |_| true)
-    }
-
-    /// As [`Simulator::predict`] without the maps that move in steps: for derivatives.
-    ///
-    /// # Errors
-    /// [`SimulateError::Model`] when the model cannot be propagated.
-    pub fn predict_smooth(
-        &self,
-        run: &Run,
-        initial: &[f64],
-    ) -> Result<Vec<Vec<f64>>, SimulateError> {
-        self.predict_through(run, initial, |map| !map.is_stepped())
-    }
-
-    fn predict_through(
-        &self,
-        run: &Run,
-        initial: &[f64],
-        keep: impl Fn(&dyn SignalMap) -> bool,
-    ) -> Result<Vec<Vec<f64>>, SimulateError> {
-        let ready = Workshop::default().prepare(self, run, initial)?;
-        Ok(self.deliver(run, &ready, self.predict_raw(run, &ready), keep))
-    }
-
-    /// The outputs of the plant, before their maps.
-    pub(crate) fn predict_raw(&self, run: &Run, ready: &Prepared) -> Vec<Vec<f64>> {
-        let mut predicted: Vec<Vec<f64>> = self
-            .outputs
-            .iter()
-            .map(|_| Vec::with_capacity(run.len))
-            .collect();
-        let mut acceleration = vec![0.0; self.model.dof_count()];
-        let needs_acceleration = self.outputs.iter().any(OutputPlan::needs_acceleration);
-        self.march(run, ready, |at, base| {
-            if needs_acceleration {
-                ready.propagator.acceleration(at, &mut acceleration);
-            }
-            for (signal, plan) in predicted.iter_mut().zip(&self.outputs) {
-                signal.push(plan.read(at, &acceleration, base));
-            }
-        });
-        predicted
-    }
-
-    /// The outputs of the plant through the maps that are kept.
-    pub(crate) fn deliver(
-        &self,
-        run: &Run,
-        ready: &Prepared,
-        mut predicted: Vec<Vec<f64>>,
-        keep: impl Fn(&dyn SignalMap) -> bool,
-    ) -> Vec<Vec<f64>> {
-        self.accelerate(ready, &mut predicted);
-        for (output, map) in self
-            .output_maps
-            .iter()
-            .filter(|(_, map)| keep(map.as_ref()) && Simulator::has_samples_of(run, map.as_ref()))
-        {
-            let signal = Sampled {
-                values: &predicted[*output],
-                time_step_s: run.time_step_s,
-                first_index: run.first_index,
-                start_s: run.start_s,
-                measured: run.measured.get(*output).and_then(Option::as_deref),
-            };
-            predicted[*output] = map.apply(signal);
-        }
-        predicted
-    }
-
-    /// Whether a map has the samples in a run that it lives in.
-    fn has_samples_of(run: &Run, map: &dyn SignalMap) -> bool {
-        !(run.mended.is_resampled && map.lives_in_single_samples())
-    }
-
-    /// Adds what the force at a sample accelerates beyond that of the straight lines, `gᵀ Δf` with g the output of
-    /// unit forces.
-    fn accelerate(&self, ready: &Prepared, predicted: &mut [Vec<f64>]) {
-        let plans = predicted.iter_mut().zip(&self.outputs);
-        for (signal, plan) in plans.filter(|(_, plan)| plan.needs_acceleration()) {
-            let per_force = self.accelerations_per_force(ready, plan);
-            for (dof, forces) in &ready.drive.beyond {
-                let g = per_force[*dof];
-                for (value, force) in signal.iter_mut().zip(forces) {
-                    *value += g * force;
-                }
-            }
-        }
-    }
-
-    /// What an output of the acceleration reads off a unit force on each degree of freedom, 1/kg.
-    fn accelerations_per_force(&self, ready: &Prepared, plan: &OutputPlan) -> Vec<f64> {
-        let n = self.model.dof_count();
-        let (rest, bases) = (vec![0.0; n], vec![0.0; ready.drive.base_count]);
-        let base = BaseMotion {
-            displacement: &bases,
-            velocity: &bases,
-            acceleration: &bases,
-        };
-        let (mut force, mut acceleration) = (vec![0.0; n], vec![0.0; n]);
-        let mut unit = |dof: usize| {
-            force.fill(0.0);
-            force[dof] = 1.0;
-            let at = Snapshot {
-                sample: 0,
-                displacement: &rest,
-                velocity: &rest,
-                dof_force: &force,
-                element_force: &[],
-            };
-            ready.propagator.acceleration(&at, &mut acceleration);
-            plan.read(&at, &acceleration, &base)
-        };
-        (0..n).map(&mut unit).collect()
-    }
-
-    /// Motion across a location along a run: between its two nodes, or of a mass.
-    ///
-    /// # Errors
-    /// [`SimulateError::Model`] when the place is not in the model.
-    pub fn path(
-        &self,
-        run: &Run,
-        initial: &[f64],
-        at: &Location,
-    ) -> Result<MemberPath, SimulateError> {
-        let ends = ends(&self.model, at)?;
-        let ready = Workshop::default().prepare(self, run, initial)?;
-        let mut path = MemberPath::default();
-        let n = self.model.dof_count();
-        let (mut acceleration, mut force) = (vec![0.0; n], vec![0.0; n]);
-        self.march(run, &ready, |at, base| {
-            force.copy_from_slice(at.dof_force);
-            for (dof, forces) in &ready.drive.beyond {
-                force[*dof] += forces[at.sample];
-            }
-            let at = &Snapshot {
-                dof_force: &force,
-                ..*at
-            };
-            ready.propagator.acceleration(at, &mut acceleration);
-            let across = |dofs: &[f64], bases: &[f64]| across(ends, dofs, bases);
-            path.displacement
-                .push(across(at.displacement, base.displacement));
-            path.velocity.push(across(at.velocity, base.velocity));
-            path.acceleration
-                .push(across(&acceleration, base.acceleration));
-        });
-        Ok(path)
-    }
-
-    fn march(
-        &self,
-        run: &Run,
-        ready: &Prepared,
-        mut observe: impl FnMut(&Snapshot<'_>, &BaseMotion<'_>),
-    ) {
-        let drive = &ready.drive;
-        let bases = drive.base_count;
-        ready.propagator.march(
-            &self.elements,
-            &excitation(self, run, ready),
-            &ready.displacement,
-            &ready.velocity,
-            &mut |at| {
-                let range = at.sample * bases..(at.sample + 1) * bases;
-                let base = BaseMotion {
-                    displacement: &drive.base_displacement[range.clone()],
-                    velocity: &drive.base_velocity[range.clone()],
-                    acceleration: &drive.base_acceleration[range],
-                };
-                observe(at, &base);
-            },
-        );
-    }
 }
 
 /// Where a force between two nodes acts once a member between them has been taken to another node.
@@ -384,7 +199,7 @@ fn moved<'a>(before: &Model, after: &Model, at: &'a Location) -> Cow<'a, Locatio
     Cow::Owned(Location::Between(pair.each_ref().map(node_now)))
 }
 
-fn ends(model: &Model, at: &Location) -> Result<[Node; 2], SimulateError> {
+pub(crate) fn ends(model: &Model, at: &Location) -> Result<[Node; 2], SimulateError> {
     let ground = simgap_model::GROUND.to_string();
     let pair = match at {
         Location::Between(pair) => pair.clone(),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use serde_json::Value;
-use simgap_blind::{Answer, Named, Score, SealedCase, Signals, Status, Truth, score};
+use simgap_blind::{Answer, Named, SealedCase, Signals, Status, Truth, score};
 use simgap_effects::Placed;
 use simgap_estimate::{FitOptions, Problem, fit_initial_states};
 use simgap_model::{Location, Model};
@@ -15,26 +15,10 @@ use super::BlindCheckError;
 use super::ask::Answered;
 use super::draw::{Sealed, digests};
 use super::files::{CHECK, MODEL, Places, read, write};
+use super::judged::Judged;
 use super::page::detail;
 use super::plan::Planned;
 use super::worker::Reply;
-
-/// One case with its score and, for a reader, what was there and what was said.
-pub(super) struct Judged {
-    pub(super) score: Score,
-    /// Truth and answer in words.
-    pub(super) detail: String,
-    /// The diagnosis gave no answer.
-    pub(super) is_failed: bool,
-    /// Time of the diagnosis on one thread; NaN where it failed.
-    pub(super) seconds: f64,
-}
-
-impl Judged {
-    pub(super) fn is_right(&self) -> bool {
-        self.score.is_right() && !self.is_failed
-    }
-}
 
 /// Opens the truths, if neither they nor the files of the cases have changed, and scores.
 pub(super) fn open(

@@ -9,7 +9,7 @@ use simgap_blind::{
 };
 use simgap_model::Model;
 
-use super::open::Judged;
+use super::judged::Judged;
 use super::plan::Planned;
 use super::worker::Reply;
 use super::{Args, LevelArg};

@@ -52,7 +52,7 @@ impl Stage {
         let loaded = format!("{both}[[load]]\n{at}\nvalue = {LOAD}\n\n");
         let arm = format!("{both}[[pendulum]]\n{at}\nvalue = {PENDULUM}\n\n");
         if effect.site().is_hydraulic() {
-            let model = super::drive::model()?;
+            let model = super::hydraulic::model()?;
             let at = sites(&model, effect.site()).into_iter().next();
             return Ok(at.map(|at| Stage { effect, model, at }));
         }

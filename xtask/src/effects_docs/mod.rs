@@ -2,6 +2,7 @@
 //! of each signature in `docs/effects/`, made from the catalogue itself.
 
 mod drive;
+mod hydraulic;
 mod machine;
 mod picture;
 mod signature;

@@ -25,6 +25,7 @@ mod table3;
 mod table4;
 mod table5;
 mod trial;
+mod two_masses;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -8,7 +8,7 @@ use simgap_tables::PrintedValue;
 
 use super::context::EXCITATIONS_HZ;
 use super::spectra::{self, Found, LINE_TOLERANCE_HZ, near};
-use super::table5::{RATE_HZ, models, motion_of};
+use super::two_masses::{RATE_HZ, models, motion_of};
 use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table, significant};
 
 /// Smallest line counted in the unknown force, N: the records of it are rebuilt without noise, and

@@ -1,6 +1,6 @@
 //! Table 5 and Fig. 13 to 16: the two-mass model.
 
-use simgap_mold::{DISPLACEMENT_CHANNEL, TwoDof};
+use simgap_mold::DISPLACEMENT_CHANNEL;
 use simgap_report::chart::{LineChart, Mark, Role, Scale, Series};
 use simgap_signal::spectrum::spectrum;
 use simgap_signal::{Trend, Window};
@@ -9,25 +9,13 @@ use simgap_tables::PrintedValue;
 use super::context::{EXCITATIONS_HZ, FAST_RATE_HZ, samples};
 use super::number::range;
 use super::peaks::{MotionLines, two_mass_lines};
-use super::simulated::{TwoMassMotion, two_mass_motion};
+use super::simulated::TwoMassMotion;
 use super::spectra::symmetric_range;
+use super::two_masses::{RATE_HZ, models, motion_of};
 use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table, significant};
 
 /// Tolerance of a mode and of the split, Hz: half a unit of the last digit printed.
 pub(crate) const MODE_TOLERANCE_HZ: f64 = 0.5;
-
-/// Rate of the simulations, Hz.
-pub(crate) const RATE_HZ: f64 = FAST_RATE_HZ;
-
-/// Samples of a simulation: 20 s.
-const COUNT: usize = 20 * RATE_HZ as usize;
-
-/// Printed and restored model for one excitation.
-pub(crate) fn models(context: &Context, freq_hz: f64) -> Result<[TwoDof; 2], ReproduceError> {
-    let printed = TwoDof::published(freq_hz)?;
-    let base = context.stated.image_base.si();
-    Ok([printed, printed.restored(base - freq_hz, base + freq_hz)?])
-}
 
 pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     let mut blocks = vec![
@@ -253,15 +241,6 @@ fn force(context: &Context) -> Result<Table, ReproduceError> {
 
 fn motion(context: &Context, freq: f64, set: usize) -> Result<TwoMassMotion, ReproduceError> {
     motion_of(context, &models(context, freq)?[set], freq)
-}
-
-/// From rest, driven by the sine force that moves m₁ by the paper's amplitude in steady state.
-pub(crate) fn motion_of(
-    context: &Context,
-    model: &TwoDof,
-    freq_hz: f64,
-) -> Result<TwoMassMotion, ReproduceError> {
-    two_mass_motion(model, context.amplitude(), freq_hz, RATE_HZ, COUNT)
 }
 
 fn millimetres(values: &[f64]) -> Vec<f64> {

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use simgap_rigs::{Answer, Diagnosis};
 
-use super::{Args, RigsError, at};
+use super::error::at;
+use super::{Args, RigsError};
 
 /// Longest time of a processor for one case, s: other work on the machine does not count.
 const LIMIT_S: f64 = 120.0;

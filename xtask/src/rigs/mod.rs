@@ -1,86 +1,19 @@
 //! `cargo xtask rigs`: draws machines with a withheld cause, has a program diagnose each, scores the answers.
 
+mod args;
 mod ask;
+mod error;
 
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Mutex;
 
 use rayon::prelude::*;
 use simgap_rigs::{Answer, Filter, Role, Truth, draw_case, page, score};
 
-/// Arguments of `cargo xtask rigs`.
-#[derive(clap::Args, Debug)]
-pub struct Args {
-    /// Seed of the cases: 1 to 999 while developing, 1000 to 1999 for reports
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Number of cases
-    #[arg(long, default_value_t = 100)]
-    cases: usize,
-    /// Folder for cases, answers, truths and the score
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// Only cases of this role: single, pair, clean, parameters, foreign or slip
-    #[arg(long)]
-    role: Option<String>,
-    /// Only cases with this kind
-    #[arg(long)]
-    kind: Option<String>,
-    /// Cases at a time
-    #[arg(long, default_value_t = 2)]
-    jobs: usize,
-    /// The program that diagnoses
-    #[arg(long, value_name = "FILE", default_value = "target/debug/simgap")]
-    program: PathBuf,
-    /// Score the answers that exist, ask for none
-    #[arg(long)]
-    score_only: bool,
-    /// Draw the cases and ask for nothing
-    #[arg(long)]
-    draw_only: bool,
-}
-
-/// Why no score was made.
-#[derive(Debug, thiserror::Error)]
-pub enum RigsError {
-    /// A role that does not exist.
-    #[error("role {0}: needed is single, pair, clean, parameters, foreign or slip")]
-    Role(String),
-    /// A kind that is not drawn.
-    #[error("kind {0}: needed is an effect of the catalogue or a foreign law of the rigs")]
-    Kind(String),
-    /// A case cannot be drawn.
-    #[error(transparent)]
-    Rig(#[from] simgap_rigs::RigError),
-    /// A file cannot be read or written.
-    #[error("{path}: {source}")]
-    File {
-        /// The file.
-        path: String,
-        /// Why.
-        source: io::Error,
-    },
-    /// A truth or an answer that cannot be read.
-    #[error("{path}: {source}")]
-    Json {
-        /// The file.
-        path: String,
-        /// Why.
-        source: serde_json::Error,
-    },
-    /// No threads.
-    #[error(transparent)]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-}
-
-fn at(path: &Path) -> impl FnOnce(io::Error) -> RigsError + '_ {
-    move |source| RigsError::File {
-        path: path.display().to_string(),
-        source,
-    }
-}
+pub use args::Args;
+pub use error::RigsError;
+use error::at;
 
 fn filter(args: &Args) -> Result<Filter, RigsError> {
     let role = match &args.role {

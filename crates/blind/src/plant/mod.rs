@@ -4,11 +4,13 @@ mod one;
 mod parts;
 mod servo;
 mod several;
+mod sizes;
 
 use simgap_model::{InputKind, Model, OutputKind, damped_modes_of};
 
 use crate::BlindError;
 use crate::random::Random;
+use sizes::Sizes;
 
 /// A plant and the sizes it is driven at.
 #[derive(Debug, Clone)]
@@ -21,14 +23,6 @@ pub(crate) struct Plant {
     /// Typical displacement, m or rad.
     pub(crate) displacement_m: f64,
     pub(crate) sample_rate_hz: f64,
-}
-
-/// Sizes from which a plant is finished.
-struct Sizes {
-    /// Frequency the plant is about, Hz.
-    freq_hz: f64,
-    displacement_m: f64,
-    amplitude: f64,
 }
 
 /// Samples per period of the highest frequency, lowest and highest draw. At 40 the first-order hold

@@ -2,8 +2,8 @@
 
 use simgap_model::{GROUND, InputKind, Load, Model, OutputKind, Pendulum};
 
-use super::Sizes;
 use super::parts::{dashpot, input, load_cell, mass, output, output_kind, pair, spring};
+use super::sizes::Sizes;
 use crate::random::Random;
 
 /// One mass on a ground spring and damper, driven by a force near its resonance.

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Block, Cylinder, GROUND, InputKind, Model, OutputKind, Valve};
 
-use super::Sizes;
 use super::parts::{dashpot, input, mass, output, pair};
+use super::sizes::Sizes;
 use crate::BlindError;
 use crate::random::Random;
 

@@ -3,9 +3,9 @@
 use simgap_model::{GROUND, Input, InputKind, Model, OutputKind};
 use simgap_mold::TwoDof;
 
-use super::Sizes;
 use super::one::rig;
 use super::parts::{dashpot, input, load_cell, mass, output, output_kind, spring};
+use super::sizes::Sizes;
 use crate::BlindError;
 use crate::random::Random;
 

@@ -13,8 +13,8 @@ use simgap_record::{Record, write_text_atomic};
 
 use crate::args::InitArgs;
 use crate::error::CliError;
+use crate::stdout::{say, say_plain};
 use crate::text::{STRONG, figure, named, shown, styled, table};
-use crate::{say, say_plain};
 use guess::{Roles, roles};
 
 /// Where the text of a named line begins.

@@ -17,17 +17,18 @@ mod error;
 mod look;
 mod motion;
 mod pair;
+mod request;
 
 use simgap_effects::{Family, Placed, catalogue};
 use simgap_estimate::Problem;
 use simgap_model::{Input, InputKind, Model, Output, OutputKind};
-use simgap_record::Record;
 use simgap_simulate::Run;
 
 pub use comparison::{
     Agreement, ChainGap, CommonTime, Comparison, Look, MagnitudePhase, Rating, SharedInput,
 };
 pub use error::CompareError;
+pub use request::CompareRequest;
 
 use crate::diagnosis::{ChannelSeries, CheckSeries, Diagnosis, Status, Where};
 use crate::gap::Prediction;
@@ -39,20 +40,6 @@ use pair::{Pairing, pair, predicted_name};
 /// What two traces cannot tell.
 const CAVEAT: &str = "with two traces alone, a bias, gain, delay or lag of the simulation looks the \
                       same as one of the sensor";
-
-/// What is compared.
-pub struct CompareRequest<'a> {
-    /// The measured record.
-    pub measured: &'a Record,
-    /// The simulated record.
-    pub simulated: &'a Record,
-    /// Columns that belong together, measured and simulated; empty for those of the same name.
-    pub pairs: &'a [(String, String)],
-    /// Columns of both that drive the machine, and are not to be compared.
-    pub inputs: &'a [String],
-    /// Whether both records begin at the same moment, whatever their stamps say.
-    pub align_start: bool,
-}
 
 /// What comes out.
 pub struct Compared {

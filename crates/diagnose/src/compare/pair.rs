@@ -6,7 +6,8 @@ use simgap_effects::Sampled;
 use simgap_record::{Channel, Record, RecordError, UnitKind};
 
 use super::comparison::{CommonTime, SharedInput};
-use super::{CompareError, CompareRequest};
+use super::error::CompareError;
+use super::request::CompareRequest;
 
 /// Fewest samples that can be judged: two thirds to learn from, one third held back.
 pub(super) const FEWEST: usize = 30;

@@ -1,8 +1,8 @@
 //! A tabulated curve of a channel.
 
-use super::{NODES, START, table, widened};
-use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::prior::{Prior, usual_prior};
+use super::table::{NODES, START, table, widened};
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale, usual_prior};
+use crate::prior::Prior;
 use crate::signal_map::{Sampled, SignalMap};
 
 /// A tabulated curve instead of a straight line between what goes into a channel and what comes out.

@@ -2,9 +2,9 @@
 
 use simgap_integrate::exact::{ForceLaw, LaneLaw, MemberMotion, gather};
 
-use super::{NODES, START, table, widened};
-use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::prior::{Prior, usual_prior};
+use super::table::{NODES, START, table, widened};
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale, usual_prior};
+use crate::prior::Prior;
 
 /// A force tabulated over displacement and velocity.
 ///

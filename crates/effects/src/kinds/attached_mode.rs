@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Damper, Location, Mass, Model, Spring};
 
-use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::prior::{Prior, usual_prior};
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale, usual_prior};
+use crate::prior::Prior;
 
 /// A mass that the model lacks rides on one that it has: a panel, a hose, a flexible load, seen at
 /// its host as one more mode.

@@ -1,7 +1,7 @@
 //! An input reaches the plant in held values.
 
-use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::prior::{Prior, usual_prior};
+use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale, usual_prior};
+use crate::prior::Prior;
 use crate::signal_map::{Retiming, Sampled};
 
 /// An input reaches the plant in held values: a set point that a controller or a bus renews only every T, and

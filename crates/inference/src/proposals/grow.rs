@@ -6,8 +6,9 @@ use simgap_effects::{Effect, Placed};
 use simgap_estimate::{Base, EstimateError, Start, linearise_at, score_outright};
 use simgap_model::{GROUND, Location};
 
-use crate::candidate_model::{CandidateModel, add_scored, is_nominal, remove, replace};
-use crate::marginal_likelihood::NominalPrior;
+use crate::candidate_model::{
+    CandidateModel, NominalPrior, add_scored, is_nominal, remove, replace,
+};
 use crate::search::Search;
 
 /// Hidden masses are fitted from this many of the values at which they act as the parameter does.

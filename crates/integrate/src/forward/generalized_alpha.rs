@@ -2,7 +2,7 @@
 
 use super::balance::{Balance, Instant};
 use super::implicit::{Coefficients, Implicit, Predictor};
-use super::{check_finite_motion, start_motion};
+use super::start::{check_finite_motion, start_motion};
 use crate::error::{IntegrateError, Result};
 use crate::motion::Solution;
 use crate::problem::{Problem, TimeGrid};

@@ -8,6 +8,7 @@ mod implicit;
 mod lu;
 mod park;
 mod runge_kutta;
+mod start;
 
 pub use amplification::{
     Dissipation, amplification_matrix, numerical_dissipation, spectral_radius,
@@ -17,11 +18,8 @@ pub use generalized_alpha::{GeneralizedAlpha, Newmark, generalized_alpha, newmar
 pub use park::park;
 pub use runge_kutta::runge_kutta;
 
-use balance::{Balance, Instant};
-use implicit::Predictor;
-
-use crate::error::{IntegrateError, Result};
-use crate::motion::{Motion, Solution};
+use crate::error::Result;
+use crate::motion::Solution;
 use crate::problem::{Problem, TimeGrid};
 
 /// A method of integration with its parameters.
@@ -65,28 +63,4 @@ pub fn simulate(problem: &Problem<'_>, grid: &TimeGrid, method: Method) -> Resul
         Method::RungeKutta4 => runge_kutta(problem, grid),
         Method::DormandPrince(tolerance) => dormand_prince(problem, grid, tolerance),
     }
-}
-
-/// The motion with its first sample, and the state there; the acceleration is that of equilibrium.
-fn start_motion(balance: &mut Balance<'_, '_>, grid: &TimeGrid) -> (Motion, Predictor) {
-    let problem = balance.problem;
-    let mut state = Predictor::zeros(problem.dof_count());
-    state.x.copy_from_slice(problem.initial_displacement());
-    state.v.copy_from_slice(problem.initial_velocity());
-    balance.acceleration(Instant::new(grid, 0, 0.0), &state.x, &state.v, &mut state.a);
-    let mut motion = Motion::zeros(problem.dof_count(), grid);
-    motion.record(0, &state.x, &state.v, &state.a);
-    (motion, state)
-}
-
-/// Refuses a state that has left the range of numbers.
-fn check_finite_motion(grid: &TimeGrid, sample: usize, state: &Predictor) -> Result<()> {
-    let sum: f64 = state.x.iter().chain(&state.v).chain(&state.a).sum();
-    if sum.is_finite() {
-        return Ok(());
-    }
-    Err(IntegrateError::Unstable {
-        time_s: grid.time_s(sample),
-        time_step_s: grid.time_step_s / grid.substeps as f64,
-    })
 }

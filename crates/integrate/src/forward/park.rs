@@ -3,7 +3,7 @@
 use super::balance::{Balance, Instant};
 use super::generalized_alpha::{Newmark, Stepper};
 use super::implicit::{Coefficients, Implicit, Predictor};
-use super::{check_finite_motion, start_motion};
+use super::start::{check_finite_motion, start_motion};
 use crate::error::Result;
 use crate::inverse::PARK_WEIGHTS;
 use crate::motion::{Motion, Solution};

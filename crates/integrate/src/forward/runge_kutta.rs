@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method.
 
 use super::balance::{Balance, Instant};
-use super::{check_finite_motion, start_motion};
+use super::start::{check_finite_motion, start_motion};
 use crate::error::Result;
 use crate::motion::Solution;
 use crate::problem::{Problem, TimeGrid};

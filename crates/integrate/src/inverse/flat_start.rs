@@ -1,7 +1,7 @@
 //! The state at the first three samples when nothing is known beforehand.
 
+use super::estimate::Estimate;
 use super::matrix3::{Matrix, Vector, apply, multiply};
-use super::smoother::Estimate;
 
 /// F⁻¹ for h = 1.
 const BACK_STEP: Matrix = [[1.0, -1.0, 0.5], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0]];

@@ -8,6 +8,7 @@
 //! [`transfer`] and [`smoother_transfer`].
 
 mod differentiator;
+mod estimate;
 mod flat_start;
 mod likelihood;
 mod matrix3;

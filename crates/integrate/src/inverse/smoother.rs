@@ -3,8 +3,9 @@
 //! Everything inside runs in the units of the model, h = 1 and σ = 1, with the state
 //! (x, h ẋ, h² ẍ)/σ. Only one number is then left, the smoothness λ = q h⁵ / σ².
 
+use super::estimate::Estimate;
 use super::flat_start::start;
-use super::matrix3::{Matrix, Vector, apply, multiply, solve_right, transpose};
+use super::matrix3::{Matrix, apply, multiply, solve_right, transpose};
 use crate::error::{IntegrateError, Result, check_finite, check_length, check_time_step};
 
 /// Least number of samples: three fix the state, the fourth is the first that can surprise.
@@ -199,9 +200,6 @@ pub(super) fn unit_step_model(smoothness: f64) -> (Matrix, Matrix) {
         shape.map(|row| row.map(|entry| smoothness * entry)),
     )
 }
-
-/// Mean and covariance of the state at one sample.
-pub(super) type Estimate = (Vector, Matrix);
 
 /// Filtered estimate of one sample and the prediction it was corrected from.
 struct Filtered {

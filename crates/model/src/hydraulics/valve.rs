@@ -1,12 +1,11 @@
 //! A servo valve that feeds a cylinder.
 
-use std::f64::consts::TAU;
+mod in_model;
 
 use serde::{Deserialize, Serialize};
 
-use super::PRESSURE_UNIT_PA;
-use crate::check::{finite_positive, item, node_name};
-use crate::{Model, ModelError, StructuralMatrices};
+use crate::ModelError;
+use crate::refuse::{finite_positive, item, node_name};
 
 /// Pressure drop below which an orifice is laminar, Pa: the square root has no slope at zero, a real orifice has one.
 const LAMINAR_PA: f64 = 5e4;
@@ -125,7 +124,7 @@ impl Valve {
         0.5 * sign * self.flow_gain() * ((1.0 + a) * forward + (1.0 - a) * back)
     }
 
-    fn check(&self, model: &Model) -> Result<(), ModelError> {
+    fn check(&self) -> Result<(), ModelError> {
         let place = item("valve", &self.name);
         node_name(&place, &self.name)?;
         for (quantity, value) in [
@@ -158,49 +157,6 @@ impl Valve {
                 });
             }
         }
-        let mut cylinders = model.cylinders.iter();
-        if cylinders.any(|cylinder| cylinder.name == self.cylinder) {
-            return Ok(());
-        }
-        Err(ModelError::Shape {
-            place,
-            found: format!("cylinder = \"{}\"", self.cylinder),
-            needed: "the name of a [[cylinder]]".into(),
-        })
-    }
-}
-
-impl Model {
-    /// Adds a valve to a cylinder that the model has: its spool becomes a coordinate at the end of [`Model::masses`].
-    ///
-    /// # Errors
-    /// [`ModelError::Value`] for a value out of range, [`ModelError::Shape`] for an unknown cylinder.
-    pub fn add_valve(&mut self, valve: Valve) -> Result<(), ModelError> {
-        valve.check(self)?;
-        self.push_coordinate(valve.spool());
-        self.valves.push(valve);
         Ok(())
-    }
-
-    /// Adds (1) and the slope of the flows over the spool at the pressures p₀.
-    pub(crate) fn add_valve_matrices(&self, valve: &Valve, matrices: &mut StructuralMatrices) {
-        let mut cylinders = self.cylinders.iter();
-        let cylinder = cylinders.find(|cylinder| cylinder.name == valve.cylinder);
-        let (Some(x), Some(cylinder)) = (self.dof(&valve.spool()), cylinder) else {
-            return;
-        };
-        let omega = TAU * valve.natural_freq;
-        matrices.mass_matrix[(x, x)] = 1.0 / (omega * omega);
-        matrices.damping_matrix[(x, x)] += 2.0 * valve.damping_ratio / omega;
-        matrices.stiffness_matrix[(x, x)] += 1.0;
-        for (chamber, p) in self
-            .chamber_dofs(cylinder)
-            .into_iter()
-            .flatten()
-            .enumerate()
-        {
-            let gain = valve.opening_gain(chamber, cylinder.pressures[chamber]);
-            matrices.stiffness_matrix[(p, x)] -= PRESSURE_UNIT_PA * gain;
-        }
     }
 }

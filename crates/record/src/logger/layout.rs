@@ -4,10 +4,11 @@ use std::borrow::Cow;
 
 use super::cells::{Cell, Dialect, SPACES, classify, split};
 use super::names::{campbell, example, names};
-use crate::error::{RecordError, shortened};
+use super::table::Layout;
+use crate::error::RecordError;
 use crate::faults::TextFault;
-use crate::select::Heading;
-use crate::{Unit, UnitKind};
+use crate::heading::{Heading, heading, is_unit};
+use crate::words::shortened;
 
 /// Lines that are looked at.
 const LOOKED_AT: usize = 2000;
@@ -50,20 +51,6 @@ const DIALECTS: [Dialect; 8] = [
         decimal_comma: true,
     },
 ];
-
-/// How a table is taken apart. Lines count from 0 here.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Layout {
-    pub(crate) dialect: Dialect,
-    /// No number that was looked at has a decimal sign.
-    pub(crate) undecided: bool,
-    /// `None` where the names were given.
-    pub(crate) header: Option<usize>,
-    pub(crate) units: Option<usize>,
-    /// Line of the first row.
-    pub(crate) first_row: usize,
-    pub(crate) headings: Vec<Heading>,
-}
 
 /// What is known of a layout before it is guessed.
 #[derive(Debug, Clone, Copy, Default)]
@@ -327,50 +314,12 @@ fn are_units(cells: &[Cow<'_, str>]) -> bool {
     known > 0 && known * 2 >= written().count() && written().all(|c| c.chars().count() <= LONGEST)
 }
 
-/// Units of no motion or force that loggers write.
-fn is_unit(symbol: &str) -> bool {
-    const OTHERS: [&str; 32] = [
-        "VDC", "VAC", "Volt", "Volts", "volt", "Amp", "Ampere", "counts", "V", "mV", "uV", "µV",
-        "A", "mA", "W", "kW", "%", "°C", "degC", "K", "°F", "Hz", "kHz", "Ohm", "1", "l/min", "kg",
-        "kg/s", "J", "µm/m", "um/m", "mV/V",
-    ];
-    Unit::parse(symbol).kind() != UnitKind::Other || OTHERS.contains(&symbol)
-}
-
 fn without_brackets(cell: &str) -> &str {
     let inner = |open, close| cell.strip_prefix(open)?.strip_suffix(close);
     inner('[', ']')
         .or_else(|| inner('(', ')'))
         .unwrap_or(cell)
         .trim()
-}
-
-/// `y [mm]`, and where the unit is known also `y (mm)`, `y / mm` and `y in mm`.
-pub(crate) fn heading(cell: &str) -> Heading {
-    let cell = cell.trim();
-    // The time of a Rohde & Schwarz oscilloscope has a unit alone.
-    if let Some(unit) = cell.strip_prefix("in ")
-        && Unit::parse(unit).kind() == UnitKind::Time
-    {
-        return Heading::new(cell, unit);
-    }
-    if let Some((name, unit)) = cell
-        .strip_suffix(']')
-        .and_then(|rest| rest.rsplit_once('['))
-        && !name.trim().is_empty()
-    {
-        return Heading::new(name, unit);
-    }
-    let round = cell
-        .strip_suffix(')')
-        .and_then(|rest| rest.rsplit_once('('));
-    let others = [round, cell.rsplit_once(" / "), cell.rsplit_once(" in ")];
-    for (name, unit) in others.into_iter().flatten() {
-        if !name.trim().is_empty() && is_unit(unit.trim()) {
-            return Heading::new(name, unit);
-        }
-    }
-    Heading::new(cell, "")
 }
 
 /// Whether a file begins with a header of the contract's own form: cells separated by commas, one

@@ -5,13 +5,14 @@
 //! each channel, or none.
 
 use super::cells::{Dialect, split};
-use super::programs::{lacks, told, value};
 use super::stamp::{parse_stamp, to_seconds};
+use super::told::{lacks, told, value};
 use crate::MAX_ROWS;
 use crate::base::Base;
-use crate::error::{RecordError, shortened};
+use crate::error::RecordError;
 use crate::note::Note;
 use crate::raw::{Raw, RawColumn};
+use crate::words::shortened;
 
 const PROGRAM: &str = "LabVIEW measurement file";
 const END: &str = "***End_of_Header***";

@@ -12,12 +12,14 @@ mod programs;
 mod rows;
 mod scopes;
 mod stamp;
+mod table;
 mod text;
 mod time_of;
+mod told;
 mod twincat;
 
 pub(crate) use cells::is_missing;
-pub(crate) use layout::{heading, starts_by_contract};
+pub(crate) use layout::starts_by_contract;
 #[cfg(feature = "xlsx")]
 pub(crate) use rows::read_sheet;
 pub(crate) use rows::read_table;

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use super::cells::{Dialect, SPACES, split};
-use super::layout::Layout;
-use crate::select::Heading;
+use super::table::Layout;
+use crate::heading::Heading;
 
 /// The four lines of a Campbell logger (TOA5): the logger, names, units, and how each was made.
 pub(super) fn campbell(lines: &[&str]) -> Option<Layout> {

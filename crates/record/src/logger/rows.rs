@@ -1,19 +1,22 @@
 //! The rows of a table of text.
 
 use super::cells::{Cell, Dialect, classify, split};
-use super::layout::{Known, Layout, guess, starts_by_contract};
+use super::layout::{Known, guess, starts_by_contract};
 use super::programs;
 use super::stamp::{RawStamp, to_seconds};
+use super::table::Layout;
 use super::text::{decode, lines};
 use super::time_of::{TimeBase, first_cells, time_of};
 use crate::clock::{Stamps, clocked};
-use crate::error::{Place, RecordError, shortened};
+use crate::error::{Place, RecordError};
 use crate::faults::TextFault;
+use crate::heading::Heading;
 use crate::mend::{Columns, finish};
 use crate::note::Note;
 use crate::raw::assemble;
 use crate::record::Origin;
-use crate::select::{Heading, Pick, ReadOptions, Reading, select};
+use crate::select::{Pick, ReadOptions, Reading, select};
+use crate::words::shortened;
 use crate::{Channel, MAX_ROWS, Unit};
 
 /// Reads a table of text whose layout has to be guessed. `name` becomes the name of the record,

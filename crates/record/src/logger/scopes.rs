@@ -1,7 +1,7 @@
 //! Exports of oscilloscopes that are no plain tables: Tektronix TDS, Rigol, GW Instek.
 
 use super::cells::split;
-use super::programs::{keyed, lacks, told, value};
+use super::told::{keyed, lacks, told, value};
 use crate::base::{Base, Uniform};
 use crate::error::RecordError;
 use crate::note::Note;
@@ -319,6 +319,6 @@ fn seconds(
         return Ok(unit.si_factor());
     }
     let line = keyed(lines, ',', key).map_or(0, |(line, _)| line);
-    let found = format!("the axis is in [{}]", crate::error::shortened(symbol));
+    let found = format!("the axis is in [{}]", crate::words::shortened(symbol));
     Err(lacks(file, line, found, "a record over time", program))
 }

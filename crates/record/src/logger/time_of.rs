@@ -1,11 +1,12 @@
 //! Which columns of a table of text hold its time.
 
 use super::cells::{Cell, Dialect, classify, split};
-use super::layout::Layout;
 use super::preamble;
-use crate::error::{RecordError, name_list};
+use super::table::Layout;
+use crate::error::RecordError;
 use crate::note::Note;
 use crate::select::{ReadOptions, time_column};
+use crate::words::name_list;
 
 /// The time base as the headings and the first row tell it.
 pub(super) struct TimeBase {

@@ -2,7 +2,7 @@
 //! of times in ms and one of values for each channel.
 
 use super::cells::{Dialect, split};
-use super::programs::{lacks, told, value};
+use super::told::{lacks, told, value};
 use crate::MAX_ROWS;
 use crate::base::Base;
 use crate::error::RecordError;

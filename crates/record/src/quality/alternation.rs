@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::Defect;
+use super::finding::Defect;
 use super::lattice::Lattice;
 
 /// Parts of the record whose estimates are compared.

@@ -1,7 +1,7 @@
 //! Is an extreme value held?
 
+use super::finding::{Defect, Edge};
 use super::lattice::Lattice;
-use super::{Defect, Edge};
 
 /// Two equal samples may straddle the crest of a smooth curve; three may not.
 const LEAST_RUN: usize = 3;

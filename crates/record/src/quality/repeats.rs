@@ -1,6 +1,6 @@
 //! Do values repeat the one before too often?
 
-use super::Defect;
+use super::finding::Defect;
 use super::lattice::Lattice;
 
 /// Fewest runs: one or two may be a machine at rest.

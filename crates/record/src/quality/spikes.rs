@@ -1,6 +1,6 @@
 //! Single samples off the curve through their neighbours.
 
-use super::Defect;
+use super::finding::Defect;
 use super::lattice::Lattice;
 
 /// Robust standard deviations a second difference must reach: out of reach for Gaussian noise.

@@ -1,6 +1,6 @@
 //! Are the time stamps off their grid, and is rounding the reason?
 
-use super::Defect;
+use super::finding::Defect;
 use crate::time_base::grid_deviations;
 
 /// Largest deviation that is not worth telling, steps.

@@ -2,7 +2,7 @@
 
 use crate::base::{Base, Uniform};
 use crate::bytes::Stored;
-use crate::error::shortened;
+use crate::words::shortened;
 use crate::{Unit, UnitKind};
 
 /// Type code of a stamp.

@@ -26,6 +26,7 @@ mod decimate;
 mod error;
 mod legend;
 mod line;
+mod line_svg;
 mod live;
 mod palette;
 mod plot;

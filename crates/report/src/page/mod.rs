@@ -6,8 +6,10 @@
 
 mod answer;
 mod computed;
+mod error;
 mod force;
 mod guide;
+mod input;
 mod picture;
 mod pictures;
 mod script;
@@ -19,49 +21,15 @@ mod values;
 mod whereabouts;
 mod which;
 
-use simgap_diagnose::{CheckSeries, Diagnosis, PlaceMotion};
-use simgap_model::{Location, Model};
+use simgap_diagnose::{CheckSeries, Diagnosis};
+use simgap_model::Location;
 
-use crate::chart::ChartError;
 use crate::markup::Html;
 use crate::wording::headline;
+pub use error::ReportError;
+pub use input::{ReportContext, ReportInput};
 pub use picture::PictureFile;
 use pictures::{Pictured, pictured};
-
-/// What a page says about where it comes from.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct ReportContext {
-    /// Version of the program.
-    pub program_version: String,
-    /// File name of the model.
-    pub model_file: String,
-    /// File names of the records the effects were found on.
-    pub train_records: Vec<String>,
-    /// File names of the records the gap is measured on; empty if parts of the training records
-    /// were held back.
-    pub check_records: Vec<String>,
-    /// The command that makes the page again.
-    pub command_line: String,
-    /// Seed of the run; nothing in a diagnosis is random, and the page says so.
-    pub seed: u64,
-}
-
-/// All that a page can tell of.
-#[derive(Debug, Clone, Copy)]
-pub struct ReportInput<'a> {
-    /// The answer.
-    pub diagnosis: &'a Diagnosis,
-    /// The check records with their predictions.
-    pub series: &'a [CheckSeries],
-    /// The motion across the members along the check records, for the force that the model lacks.
-    pub motions: &'a [PlaceMotion],
-    /// The model as given, to set the corrected one beside it.
-    pub nominal: Option<&'a Model>,
-    /// The corrected model.
-    pub corrected: Option<&'a Model>,
-    /// Where the page comes from.
-    pub context: &'a ReportContext,
-}
 
 /// A page, and its pictures as files of their own.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,31 +38,6 @@ pub struct Report {
     pub html: String,
     /// Its pictures, in the order of the page.
     pub pictures: Vec<PictureFile>,
-}
-
-/// Why a page cannot be made.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReportError {
-    /// The lists of a check record do not go together.
-    #[error(
-        "channel `{channel}` of check record `{record}` has {found} {what} values for {needed} times, equally many are needed"
-    )]
-    LengthMismatch {
-        /// File name of the record.
-        record: String,
-        /// Output channel.
-        channel: String,
-        /// `measured`, `nominal` or `corrected`.
-        what: &'static str,
-        /// Values found.
-        found: usize,
-        /// Time stamps.
-        needed: usize,
-    },
-    /// A picture failed.
-    #[error("the page cannot be drawn: {0}")]
-    Chart(#[from] ChartError),
 }
 
 /// The page and its pictures.

@@ -1,41 +1,14 @@
 //! Every claim of the paper, and every lead on its gap, with a verdict.
 
+mod claim;
 mod leads;
 mod models;
 mod motion;
 mod tables;
 
+use claim::Claim;
+
 use super::{Block, Cell, Context, Page, ReproduceError, Table, Verdict};
-
-/// A claim, judged by a computed condition.
-pub(super) struct Claim {
-    claim: &'static str,
-    place: &'static str,
-    verdict: Verdict,
-    because: String,
-}
-
-impl Claim {
-    /// The verdict is `then` if the condition holds, and not reproducible otherwise.
-    fn judged(
-        claim: &'static str,
-        place: &'static str,
-        (holds, then): (bool, Verdict),
-        because: impl Into<String>,
-    ) -> Self {
-        let verdict = if holds {
-            then
-        } else {
-            Verdict::NotReproducible
-        };
-        Self {
-            claim,
-            place,
-            verdict,
-            because: because.into(),
-        }
-    }
-}
 
 pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     let mut paper = tables::on_table_1(context)?;

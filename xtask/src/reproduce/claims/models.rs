@@ -3,7 +3,8 @@
 use super::super::context::EXCITATIONS_HZ;
 use super::super::number::range;
 use super::super::sweep::Sweep;
-use super::super::table5::{MODE_TOLERANCE_HZ, models};
+use super::super::table5::MODE_TOLERANCE_HZ;
+use super::super::two_masses::models;
 use super::super::{Context, ReproduceError, Verdict, figures, machine, significant};
 use super::Claim;
 

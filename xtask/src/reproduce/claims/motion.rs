@@ -9,7 +9,8 @@ use super::super::number::range;
 use super::super::peaks::{lines_of_motion, two_mass_lines};
 use super::super::simulated::driven_response;
 use super::super::table4::beat_of;
-use super::super::table5::{MODE_TOLERANCE_HZ, RATE_HZ, models, motion_of};
+use super::super::table5::MODE_TOLERANCE_HZ;
+use super::super::two_masses::{RATE_HZ, models, motion_of};
 use super::super::{Context, ReproduceError, Verdict, significant};
 use super::Claim;
 

@@ -3,10 +3,11 @@
 use pulp::{Arch, Simd};
 use simgap_model::{BodyPoint, Node};
 
-use super::batch::LaneSet;
+use super::element::{ElementLanes, LaneLaw};
 use super::kernel::LaneKernel;
-use super::law::{ElementLanes, LaneLaw, OneByOne};
+use super::law::OneByOne;
 use super::row::{Row, State, change, entry};
+use super::set::LaneSet;
 use super::wide::{Which, Wide};
 use super::{LANES, Mask, Pack};
 use crate::exact::law::{ForceLaw, Port};

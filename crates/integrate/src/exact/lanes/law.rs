@@ -4,49 +4,10 @@ use std::any::Any;
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::element::{ElementLanes, LaneLaw};
 use super::solve::{self, LawLanes};
-use super::{LANES, Mask, Pack};
+use super::{LANES, Pack};
 use crate::exact::law::{Followed, ForceLaw, MemberMotion};
-
-/// One law with the parameters of eight sets. Made by [`gather`], or lane by lane for laws that
-/// do not offer [`ForceLaw::lanes`].
-pub trait LaneLaw: Send + Sync {
-    /// Solves one element for the end of a step, the others held.
-    fn solve(&self, arch: Arch, element: &mut ElementLanes);
-
-    /// Commits the memory at the end of a step.
-    fn remember(&self, arch: Arch, element: &mut ElementLanes);
-}
-
-/// One element of eight sets within one step.
-#[derive(Debug, Clone)]
-pub struct ElementLanes {
-    /// Whether there is no other element.
-    pub(super) alone: bool,
-    pub(super) dry: bool,
-    pub(super) remembers: bool,
-    /// Motion at the end of the step without the forces of the element itself.
-    pub(super) displacement: Pack,
-    pub(super) velocity: Pack,
-    pub(super) time_s: Pack,
-    /// Length of the step.
-    pub(super) step_s: Pack,
-    /// What a unit of its forces takes from displacement and velocity.
-    pub(super) compliance: [Pack; 2],
-    pub(super) dry_compliance: [Pack; 2],
-    pub(super) start_velocity: Pack,
-    /// Velocity at the end of the step without the forces of any element.
-    pub(super) free_velocity: Pack,
-    pub(super) end_velocity: Pack,
-    pub(super) smooth: Pack,
-    pub(super) dry_force: Pack,
-    pub(super) dry_end: Pack,
-    pub(super) memory: Pack,
-    /// Displacement, velocity and time at the start of the step, for a law that remembers.
-    pub(super) from: [Pack; 3],
-    /// Sets that still iterate; afterwards those whose forces changed.
-    pub(super) open: Mask,
-}
 
 /// The parameters of eight laws of one type, and how they become a law again.
 struct Gathered<F, const K: usize> {

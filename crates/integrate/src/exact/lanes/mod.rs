@@ -11,15 +11,19 @@
 
 mod batch;
 mod block;
+mod element;
 mod kernel;
 mod law;
 mod row;
+mod set;
 mod solve;
 mod source;
 mod wide;
 
-pub use batch::{Batch, LaneObserver, LaneSet, LaneSnapshot};
-pub use law::{ElementLanes, LaneLaw, gather};
+pub use batch::{Batch, LaneObserver, LaneSnapshot};
+pub use element::{ElementLanes, LaneLaw};
+pub use law::gather;
+pub use set::LaneSet;
 
 /// Sets in a pack: one register of AVX-512, two of AVX2.
 pub const LANES: usize = 8;

@@ -6,7 +6,7 @@
 
 use pulp::Simd;
 
-use super::law::ElementLanes;
+use super::element::ElementLanes;
 use super::wide::{Which, Wide};
 use super::{LANES, Pack};
 use crate::exact::law::{Followed, MemberMotion};

@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::batch::LaneSet;
+use super::set::LaneSet;
 use super::wide::{Which, Wide};
 use super::{LANES, Mask, Pack};
 use crate::exact::march::Excitation;

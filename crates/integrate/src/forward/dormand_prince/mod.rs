@@ -8,7 +8,7 @@ pub use control::AdaptiveTolerance;
 use self::control::Controller;
 use self::tableau::{ERROR_WEIGHTS, NODES, STAGE_WEIGHTS, STAGES};
 use super::balance::{Balance, Instant};
-use super::start_motion;
+use super::start::start_motion;
 use crate::error::{IntegrateError, Result};
 use crate::motion::{Motion, Solution};
 use crate::problem::{Excitation, Problem, TimeGrid};

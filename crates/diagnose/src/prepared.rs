@@ -1,0 +1,30 @@
+//! What is known before effects are looked for.
+
+use simgap_effects::Placed;
+use simgap_estimate::{Fit, FitOptions, Problem, fit};
+
+/// Everything that is known before effects are looked for.
+pub(crate) struct Prepared {
+    /// All training records.
+    pub(crate) train: Problem,
+    /// The part of them that is searched in.
+    pub(crate) excerpt: Problem,
+    /// The model as given.
+    pub(crate) nominal: Fit,
+    /// With its nominal parameters re-estimated.
+    pub(crate) recalibrated: Fit,
+    /// Nominal parameters at their nominal values.
+    pub(crate) parameters: Vec<Placed>,
+}
+
+impl Prepared {
+    /// Minus the log-likelihood of re-estimated parameters under the given options.
+    pub(crate) fn misfit_of_parameters(&self, options: &FitOptions) -> f64 {
+        let held = FitOptions {
+            most_steps: 0,
+            ..options.clone()
+        };
+        let fitted = fit(&self.train, &self.recalibrated.estimate, &held);
+        fitted.map_or(f64::INFINITY, |fit| fit.misfit)
+    }
+}

@@ -1,0 +1,122 @@
+//! What drives a simulator in a run.
+
+use simgap_effects::Sampled;
+use simgap_model::{InputKind, Node};
+
+use crate::drive::{Coupling, Drive, DriveKey, derivative, straighten};
+use crate::{Run, SimulateError, Simulator};
+
+impl Simulator {
+    pub(crate) fn drive_key<'a>(&'a self, run: &Run) -> Result<DriveKey<'a>, SimulateError> {
+        Ok(DriveKey {
+            run,
+            input_effects: &self.input_effects,
+            mapped_inputs: self.input_maps.iter().map(|(input, _)| *input).collect(),
+            input_terms: {
+                let inputs = 0..self.model.inputs.len();
+                let terms = inputs.map(|i| self.model.input_terms(i));
+                terms.collect::<Result<_, _>>()?
+            },
+            loads: &self.loads,
+            couplings: self.couplings()?,
+        })
+    }
+
+    /// Forces on the masses and motion of the bases, sample by sample.
+    pub(crate) fn drive(&self, run: &Run) -> Result<Drive, SimulateError> {
+        let n = self.model.dof_count();
+        let mut inputs: Vec<std::borrow::Cow<'_, [f64]>> = run
+            .inputs
+            .iter()
+            .map(|signal| signal.as_slice().into())
+            .collect();
+        for (input, map) in &self.input_maps {
+            let signal = Sampled {
+                values: &inputs[*input],
+                time_step_s: run.time_step_s,
+                first_index: run.first_index,
+                start_s: run.start_s,
+                measured: None,
+            };
+            inputs[*input] = map.apply(signal).into();
+        }
+        let mut drive = Drive {
+            dof_force: Vec::with_capacity(run.len * n),
+            ..Drive::default()
+        };
+        for _ in 0..run.len {
+            drive.dof_force.extend_from_slice(&self.loads);
+        }
+        let base_inputs: Vec<usize> = (0..inputs.len())
+            .filter(|&i| self.model.inputs[i].kind == InputKind::Displacement)
+            .collect();
+        drive.base_count = base_inputs.len();
+        for (i, signal) in inputs.iter().enumerate() {
+            for (dof, weight) in self.model.input_terms(i)? {
+                for (sample, value) in signal.iter().enumerate() {
+                    drive.dof_force[sample * n + dof] += weight * value;
+                }
+            }
+        }
+        let motion: Vec<[Vec<f64>; 3]> = base_inputs
+            .iter()
+            .map(|&i| {
+                let velocity = derivative(&inputs[i], run.time_step_s);
+                let acceleration = derivative(&velocity, run.time_step_s);
+                [inputs[i].to_vec(), velocity, acceleration]
+            })
+            .collect();
+        let interleave = |k: usize| -> Vec<f64> {
+            let samples = if motion.is_empty() { 0 } else { run.len };
+            (0..samples)
+                .flat_map(|s| motion.iter().map(move |base| base[k][s]))
+                .collect()
+        };
+        drive.base_displacement = interleave(0);
+        drive.base_velocity = interleave(1);
+        drive.base_acceleration = interleave(2);
+        for coupling in self.couplings()? {
+            let motion = &motion[coupling.base][coupling.order];
+            for (sample, value) in motion.iter().enumerate() {
+                drive.dof_force[sample * n + coupling.dof] += coupling.coefficient * value;
+            }
+        }
+        drive.beyond = straighten(&mut drive.dof_force, n);
+        Ok(drive)
+    }
+
+    /// Springs, dampers and beams to moving bases: they do k b + c ḃ − m b̈ to the coordinates.
+    fn couplings(&self) -> Result<Vec<Coupling>, SimulateError> {
+        let springs = self
+            .model
+            .springs
+            .iter()
+            .map(|s| (&s.between, 0, s.stiffness));
+        let dampers = self
+            .model
+            .dampers
+            .iter()
+            .map(|d| (&d.between, 1, d.damping));
+        let mut couplings = Vec::new();
+        for (between, order, coefficient) in springs.chain(dampers) {
+            let pair = self.model.resolve_pair(between, || "member".into())?;
+            let ([other, Node::Base(base)] | [Node::Base(base), other]) = pair else {
+                continue;
+            };
+            couplings.extend(other.terms().map(|(dof, weight)| Coupling {
+                dof,
+                base,
+                order,
+                coefficient: weight * coefficient,
+            }));
+        }
+        let inertia = self.model.base_inertia().into_iter();
+        couplings.extend(inertia.map(|(dof, base, mass)| Coupling {
+            dof,
+            base,
+            order: 2,
+            coefficient: -mass,
+        }));
+        Ok(couplings)
+    }
+}

@@ -1,0 +1,35 @@
+//! What is asked of `cargo xtask rigs`.
+
+use std::path::PathBuf;
+
+/// Arguments of `cargo xtask rigs`.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// Seed of the cases: 1 to 999 while developing, 1000 to 1999 for reports
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Number of cases
+    #[arg(long, default_value_t = 100)]
+    pub(super) cases: usize,
+    /// Folder for cases, answers, truths and the score
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: PathBuf,
+    /// Only cases of this role: single, pair, clean, parameters, foreign or slip
+    #[arg(long)]
+    pub(super) role: Option<String>,
+    /// Only cases with this kind
+    #[arg(long)]
+    pub(super) kind: Option<String>,
+    /// Cases at a time
+    #[arg(long, default_value_t = 2)]
+    pub(super) jobs: usize,
+    /// The program that diagnoses
+    #[arg(long, value_name = "FILE", default_value = "target/debug/simgap")]
+    pub(super) program: PathBuf,
+    /// Score the answers that exist, ask for none
+    #[arg(long)]
+    pub(super) score_only: bool,
+    /// Draw the cases and ask for nothing
+    #[arg(long)]
+    pub(super) draw_only: bool,
+}
