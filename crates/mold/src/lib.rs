@@ -4,6 +4,7 @@
 //! - [`TwoDof`]: Eq. (4) with Table 5 as printed, and [`TwoDof::restored`], the same masses and k₁
 //!   with k_leaf and k₂ solved so that the modes lie where the paper wants them.
 //! - [`HeaveRoll`]: heave and roll on a left and a right cylinder; [`LockedCylinder`]: shut oil as a spring.
+//! - [`ServoMold`]: the same with each cylinder under servo control, in closed form and as a model file.
 //! - [`LeafSpring`], [`MoldOnLeaves`]: leaf springs as beams, in closed form and as condensed finite elements.
 //! - [`RebuiltRecord`]: the measured data is lost; these records follow the printed numbers and say
 //!   so ([`SweepRecord`] for a sweep). Each of the two readings of the 50 − f lines ([`Reading`]) can be built at any sample rate.
@@ -30,6 +31,8 @@ mod one_dof;
 mod plan;
 mod rebuild;
 mod restored;
+mod servo;
+mod servo_drive;
 mod sweep;
 mod two_dof;
 
@@ -44,5 +47,7 @@ pub use plan::{
     Derivative, HARMONIC_SHARE, Reading, RebuildPlan, published_line_amplitude, published_plan,
 };
 pub use rebuild::{RebuiltRecord, rebuild};
+pub use servo::{SET_POINT_CHANNEL, ServoMold};
+pub use servo_drive::{Controller, ServoDrive};
 pub use sweep::{SweepPlan, SweepRecord, published_sweep, rebuild_sweep};
 pub use two_dof::TwoDof;

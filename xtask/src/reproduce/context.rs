@@ -14,7 +14,7 @@ use simgap_tables::{StatedValues, Table1, Table2, Table3, Table4, Table5};
 use super::ReproduceError;
 
 /// Park's formula, seen from the frequency domain.
-pub(crate) const PARK: RateFormula = RateFormula::Scheme(Differentiator::Park);
+pub const PARK: RateFormula = RateFormula::Scheme(Differentiator::Park);
 
 /// Excitations that Tables 3, 4 and 5 share, Hz.
 pub(crate) const EXCITATIONS_HZ: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];

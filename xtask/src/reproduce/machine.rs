@@ -4,28 +4,33 @@ use simgap_mold::{BeamEnds, HeaveRoll, LeafSpring, LockedCylinder, MoldOnLeaves}
 use simgap_report::chart::{LineChart, Mark, Role, Series};
 
 use super::number::range;
+use super::servo::Servo;
 use super::{Block, Cell, Context, Page, ReproduceError, Table, significant};
 
 /// **Assumed**: piston area of a cylinder, m², and its length of oil, both sides together, m.
-const CYLINDER: [f64; 2] = [0.02, 0.08];
+pub(crate) const CYLINDER: [f64; 2] = [0.02, 0.08];
 
 /// Bulk moduli of oil, Pa: with air in it, and without (`merritt1967`).
 const BULK_MODULI_PA: [f64; 4] = [0.7e9, 1.0e9, 1.4e9, 1.7e9];
 
+/// Bulk modulus of mineral oil without air, Pa (`merritt1967`).
+pub(crate) const BULK_MODULUS_OF_OIL_PA: [f64; 2] = [1.4e9, 1.7e9];
+
 /// **Assumed**: length, width and thickness of leaf springs of steel, m. Nothing is printed.
-const LEAVES_M: [[f64; 3]; 2] = [[1.06, 0.2, 0.010], [1.50, 0.2, 0.020]];
+pub(crate) const LEAVES_M: [[f64; 3]; 2] = [[1.06, 0.2, 0.010], [1.50, 0.2, 0.020]];
 
 /// Leaf springs of the machine (Fig. 8).
-const LEAF_COUNT: usize = 4;
+pub(crate) const LEAF_COUNT: usize = 4;
 
 /// Damping ratios of the heave for the roll, 1: that of Table 1, and less.
-const DAMPING_SHARES: [f64; 3] = [1.0, 0.2, 0.05];
+pub(crate) const DAMPING_SHARES: [f64; 3] = [1.0, 0.2, 0.05];
 
 pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
+    let servo = Servo::new(context)?;
     Ok(Page {
         stem: "machine",
         title: "The machine behind the numbers".to_owned(),
-        summary: "k₁ as shut oil; Fig. 8 and 9 with leaf springs as beams; 5 Hz as heave and roll".to_owned(),
+        summary: "k₁ as shut oil, K as servo; Fig. 8 and 9 with leaf springs as beams; 5 Hz as heave and roll".to_owned(),
         blocks: vec![
             Block::Text(
                 "The paper describes two cylinders, four leaf springs and a torsional mode, and prints no dimension of them. \
@@ -35,6 +40,8 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
             ),
             Block::Text(oil_text(context)?),
             Block::Table(oil_table(context)?),
+            Block::Text(servo.text()),
+            Block::Table(servo.table(context)?),
             Block::Text(leaf_text(context)?),
             Block::Table(leaf_table(context)?),
             leaf_figure(context)?,
@@ -60,9 +67,8 @@ fn oil_text(context: &Context) -> Result<String, ReproduceError> {
     let pure = oil_stiffness(BULK_MODULI_PA[2])?;
     Ok(format!(
         "**k₁ = {} N/m is the size of shut oil.** With the valve shut, two cylinders of {} m² with {} mm of oil at {} GPa have \
-         {} GN/m, {} Hz on {} t; k₁ would take {} GPa. K of Table 1 is {} times as soft: with the valve open the servo holds the \
-         mold, and its stiffness is that of the loop. So the 1-DOF model describes the mold on its servo, and k₁ the mold \
-         on its oil; they are two stiffnesses of one machine at different frequencies, and neither model has both.",
+         {} GN/m, {} Hz on {} t; k₁ would take {} GPa. K of Table 1 is {} times as soft: Eq. (1) and \
+         Eq. (4) give one machine two stiffnesses.",
         context.table5.mold_stiffness.printed(),
         CYLINDER[0],
         significant(1e3 * CYLINDER[1], 2),
@@ -70,9 +76,14 @@ fn oil_text(context: &Context) -> Result<String, ReproduceError> {
         significant(1e-9 * pure, 2),
         significant(freq_on(context, pure), 3),
         context.table1.mass.printed(),
-        significant(1e-9 * BULK_MODULI_PA[2] * printed / pure, 3),
+        significant(1e-9 * bulk_modulus_of_k1(context)?, 3),
         significant(printed / context.mold.stiffness(), 3),
     ))
+}
+
+/// The bulk modulus that makes k₁ of Table 5 of the cylinders assumed, Pa.
+pub(crate) fn bulk_modulus_of_k1(context: &Context) -> Result<f64, ReproduceError> {
+    Ok(context.table5.mold_stiffness.si() / oil_stiffness(1.0)?)
 }
 
 fn oil_table(context: &Context) -> Result<Table, ReproduceError> {
@@ -261,7 +272,7 @@ fn leaf_figure(context: &Context) -> Result<Block, ReproduceError> {
 }
 
 /// Half span over radius of gyration that puts the roll at the torsional mode of the text.
-fn span_ratio(context: &Context) -> f64 {
+pub(crate) fn span_ratio(context: &Context) -> f64 {
     context.stated.torsional_mode.si() / context.mold.natural_freq_hz()
 }
 

@@ -17,6 +17,7 @@ mod number;
 mod page;
 mod peaks;
 mod readings;
+mod servo;
 mod simulated;
 mod spectra;
 mod sweep;
@@ -24,15 +25,17 @@ mod table1;
 mod table3;
 mod table4;
 mod table5;
+mod three_unknowns;
 mod trial;
 mod two_masses;
+mod two_rates;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::generated;
 
-pub use context::Context;
+pub use context::{Context, PARK};
 pub use error::ReproduceError;
 pub use files::Outcome;
 pub use number::{range, round_to, significant};

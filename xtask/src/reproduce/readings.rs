@@ -2,17 +2,16 @@
 
 use simgap_mold::{DISPLACEMENT_CHANNEL, Reading, published_line_amplitude};
 use simgap_report::chart::{LineChart, Mark, Role, Scale, Series};
-use simgap_signal::lines::fit_lines;
 
-use super::context::{EXCITATIONS_HZ, FAST_RATE_HZ, samples};
+use super::context::{EXCITATIONS_HZ, FAST_RATE_HZ};
 use super::number::range;
 use super::spectra::channel_spectrum;
-use super::trial::{FROM_REST, GAIN, LINE, TIMING, Trial, named, trials};
-use super::{Block, Cell, Context, Page, ReproduceError, Table, significant};
+use super::table4::height_off_a_bin;
+use super::trial::{FROM_REST, GAIN, INTERPOLATION, LINE, TILT, TIMING, Trial, named, trials};
+use super::{Block, Cell, Context, Page, ReproduceError, Table, significant, two_rates};
 
-/// Lines weaker than this are printed as none, m: rounding and the second order of the timing
-/// error stay below.
-const NO_LINE_M: f64 = 2e-8;
+/// Excitation of the pictures, Hz.
+const PICTURED_HZ: f64 = 3.0;
 
 /// Mains where the author works (Asan, Republic of Korea), Hz; the paper does not print it.
 const MAINS_HZ: f64 = 60.0;
@@ -21,7 +20,7 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     let tried = trials(context)?;
     let mut blocks = vec![
         Block::Text(format!(
-            "The displacement, sampled at {} Hz, has a line at 50 − f. Seven readings of it, and interpolation, each with \
+            "The displacement, sampled at {} Hz, has a line at 50 − f. Seven readings of it, and two that their shape excludes, each with \
              **one number** for the six F0 of [Table 4](table4.md), through the same Park's formula and the same Eq. (3):",
             context.sample_rate_hz()
         )),
@@ -31,14 +30,14 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
         Block::Table(predictions_by_reading()),
         Block::Text(evidence_text(context)?),
         Block::Table(forces(context)?),
-        Block::Table(predictions(context)?),
+        Block::Table(two_rates::table(context)?),
         Block::Text(experiment_text(context)),
     ];
     blocks.extend(pictures(context)?);
     Ok(Page {
         stem: "readings",
         title: "Readings of the lines at 50 − f".to_owned(),
-        summary: "seven readings, one number each: fit, further predictions, what is printed for and against, experiment".to_owned(),
+        summary: "nine readings, one number each: fit, further predictions, what is printed for and against, experiment".to_owned(),
         blocks,
     })
 }
@@ -71,9 +70,13 @@ fn fits(tried: &[Trial]) -> Table {
     table
 }
 
-/// The readings whose R² is positive.
-fn left_over(tried: &[Trial]) -> Vec<&Trial> {
-    tried.iter().filter(|trial| trial.r_squared > 0.9).collect()
+/// The readings that leave less of any row than heights read off a bin may be off by.
+fn left_over(tried: &[Trial]) -> Result<Vec<&Trial>, ReproduceError> {
+    let low = height_off_a_bin()?;
+    Ok(tried
+        .iter()
+        .filter(|trial| trial.worst_relative_error < low)
+        .collect())
 }
 
 fn amplitude_text(tried: &[Trial]) -> Result<String, ReproduceError> {
@@ -82,7 +85,7 @@ fn amplitude_text(tried: &[Trial]) -> Result<String, ReproduceError> {
         named(tried, LINE)?,
         named(tried, FROM_REST)?,
     );
-    let open = left_over(tried);
+    let open = left_over(tried)?;
     let all: Vec<f64> = open.iter().map(|trial| trial.r_squared).collect();
     let likelihoods: Vec<f64> = open.iter().map(|trial| trial.log_likelihood).collect();
     let spread = likelihoods
@@ -93,8 +96,8 @@ fn amplitude_text(tried: &[Trial]) -> Result<String, ReproduceError> {
     Ok(format!(
         "**The heights do not decide.** {} of the {} laws fit with R² = {}, and their log-likelihoods lie within {} of one another: sampling \
          (R² = {}), a straight line (R² = {}) and even the two-mass model from rest (R² = {}, with one scale of {} for all \
-         rows: the support needs one number too, not an amplitude for each row). What is flat in f is excluded (R² = {}), and so is \
-         interpolation, which grows as f².",
+         rows: the support needs one number too, not an amplitude for each row). What is flat in f is excluded (R² = {}), and so are \
+         interpolation (R² = {}) and a tilt (R² = {}), which grow as f².",
         open.len(),
         tried.len(),
         range(&all, 3),
@@ -104,12 +107,14 @@ fn amplitude_text(tried: &[Trial]) -> Result<String, ReproduceError> {
         significant(rest.r_squared, 3),
         significant(rest.value, 3),
         significant(named(tried, GAIN)?.r_squared, 2),
+        significant(named(tried, INTERPOLATION)?.r_squared, 2),
+        significant(named(tried, TILT)?.r_squared, 2),
     ))
 }
 
 /// What each reading says beyond the heights: the line at a faster rate, the images of harmonics, the pressure, and
 /// what speaks against it in print.
-const BEYOND: [[&str; 5]; 8] = [
+const BEYOND: [[&str; 5]; 9] = [
     [
         TIMING,
         "moves to f_s/2 − f",
@@ -160,7 +165,14 @@ const BEYOND: [[&str; 5]; 8] = [
         "the heights",
     ],
     [
-        "interpolation of every other sample",
+        TILT,
+        "f_s/2 − f, or 50 ∓ f",
+        "50 − n f, growing with n²",
+        "no line",
+        "the heights",
+    ],
+    [
+        INTERPOLATION,
         "moves to f_s/2 − f",
         "50 − n f, growing with n²",
         "no line",
@@ -201,23 +213,33 @@ fn evidence_text(context: &Context) -> Result<String, ReproduceError> {
         larger += usize::from(force > super::table5::one_dof_force(context, freq)?);
     }
     let folded = context.sample_rate_hz() - MAINS_HZ;
+    // The highest harmonic printed at the excitation of the pictures.
+    let row = context
+        .table2
+        .rows
+        .iter()
+        .find(|row| row.excitation.si() == PICTURED_HZ);
+    let high = row
+        .and_then(|row| row.displacement.lines_hz().last().copied())
+        .unwrap_or(f64::NAN);
     Ok(format!(
         "**What else is printed does decide some.**\n\n\
          - *The pressure has no line.* A line of {} µm at 50 − f on {} t takes {} kN if the mold really moves (table below). \
-         Table 2 prints no high line in the pressure in any row, though the force would be larger than the fundamental of the pressure force itself in {} of the six rows. That speaks against every \
+         Table 2 prints no high line in the pressure in any row, though the force would be larger than the fundamental of the pressure force itself in {} of {} rows. That speaks against every \
          reading in which the cylinders shake the mold: the held set point and the real vibration.\n\
          - *Mains.* Where the author works mains has {} Hz, not 50: its carrier would fold to {} ∓ f at {} Hz. Pick-up of \
          the mains is a poor candidate; a carrier at exactly half the sample rate points at the instrument.\n\
          - *A linear Eq. (4) in steady state* moves at f and at nothing else; its two modes ring from the start only and die away. \
          A force at f leaves no line at 50 ∓ f ([claims](claims.md)).\n\
          - *One high line.* Sampling images every harmonic of Table 2, to 50 − n f; Table 2 prints one. An image is 2πnfτ of its harmonic, {} % at \
-         {} Hz and {} % at 18 Hz. No heights are printed, so low harmonics are not excluded.\n\n\
+         {} Hz and {} % at {} Hz. No heights are printed, so low harmonics are not excluded.\n\n\
          Alternating sampling contradicts none of these, needs no second number, and has its line at exactly half the sample \
-         rate less f, as all seven rows of Table 2. That is the likeliest reading; it is not proved.",
+         rate less f, as all {} rows of Table 2. That is the likeliest reading; it is not proved.",
         range(&lines, 2),
         context.stated.mold_mass.printed(),
         range(&forces, 2),
         larger,
+        EXCITATIONS_HZ.len(),
         MAINS_HZ,
         folded,
         context.sample_rate_hz(),
@@ -226,7 +248,9 @@ fn evidence_text(context: &Context) -> Result<String, ReproduceError> {
             1
         ),
         EXCITATIONS_HZ[0],
-        significant(1e2 * std::f64::consts::TAU * 18.0 * context.timing.value, 1),
+        significant(1e2 * std::f64::consts::TAU * high * context.timing.value, 1),
+        high,
+        context.table2.rows.len(),
     ))
 }
 
@@ -234,8 +258,8 @@ fn experiment_text(context: &Context) -> String {
     format!(
         "**Which experiment decides.** At {} Hz sampling and vibration give the same line at 50 − f: *the published data cannot decide* between \
          them by the displacement alone. Sampled at {FAST_RATE_HZ} Hz (half of it would do), the line moves to half the sample rate less f if the sampling makes \
-         it, and stays, as a pair at 50 ∓ f, if the mold or a carrier does. A second sensor on its own converter, or a shift of the \
-         sample rate by 1 Hz, decides as well; a line in the pressure tells a real vibration from a carrier.",
+         it, and stays, as a pair at 50 ∓ f, if the mold or a carrier does. A second sensor on its own converter, or another \
+         sample rate, decides as well; a line in the pressure tells a real vibration from a carrier.",
         context.sample_rate_hz()
     )
 }
@@ -294,95 +318,8 @@ fn amplitude_figure(context: &Context, tried: &[Trial]) -> Result<Block, Reprodu
     ))
 }
 
-/// Amplitudes (m) of the displacement at 50 − f, 50 + f and f_s/2 − f, fitted together with the
-/// harmonics of Table 2.
-fn measured_lines(
-    context: &Context,
-    freq: f64,
-    rate: f64,
-    reading: Reading,
-) -> Result<[Option<f64>; 3], ReproduceError> {
-    let rebuilt = context.record(freq, rate, reading)?;
-    let base = context.stated.image_base.si();
-    let nyquist = 0.5 * rate;
-    let mut freqs = vec![base - freq, base + freq, nyquist - freq];
-    freqs.retain(|line| *line < nyquist);
-    freqs.sort_by(f64::total_cmp);
-    freqs.dedup();
-    let asked = freqs.clone();
-    let plan_lines = rebuilt.plan.lines_hz.iter().copied();
-    freqs.extend(plan_lines.filter(|line| !asked.contains(line)));
-    freqs.extend(
-        [freq]
-            .into_iter()
-            .filter(|f| !rebuilt.plan.lines_hz.contains(f)),
-    );
-    let values = samples(&rebuilt, DISPLACEMENT_CHANNEL)?;
-    let fit = fit_lines(rebuilt.record.time_s(), &values, &freqs)?;
-    let at = |wanted: f64| {
-        let at = freqs.iter().position(|line| *line == wanted)?;
-        fit.lines.get(at).map(|line| line.amplitude)
-    };
-    Ok([at(base - freq), at(base + freq), at(nyquist - freq)])
-}
-
-/// Whether the two readings look alike at the paper's rate and part at the fast one: line at 50 − f
-/// under both; then at 50 − f under one only, and at f_s/2 − f under the other only.
-pub(crate) fn part_at_the_fast_rate_only(context: &Context) -> Result<bool, ReproduceError> {
-    let there = |line: Option<f64>| line.is_some_and(|line| line > NO_LINE_M);
-    for freq in EXCITATIONS_HZ {
-        let (timing, support) = (context.timing_reading(), context.support_reading(freq)?);
-        let slow = context.sample_rate_hz();
-        let alike = there(measured_lines(context, freq, slow, timing)?[0])
-            && there(measured_lines(context, freq, slow, support)?[0]);
-        let [low, high, image] = measured_lines(context, freq, FAST_RATE_HZ, timing)?.map(there);
-        let by_timing = !low && !high && image;
-        let [low, high, image] = measured_lines(context, freq, FAST_RATE_HZ, support)?.map(there);
-        if !(alike && by_timing && low && high && !image) {
-            return Ok(false);
-        }
-    }
-    Ok(true)
-}
-
-fn predictions(context: &Context) -> Result<Table, ReproduceError> {
-    let mut table = Table::new(
-        "Lines of the rebuilt displacement [µm], by reading and sample rate",
-        &[
-            "f [Hz]",
-            "reading",
-            "rate [Hz]",
-            "at 50 − f",
-            "at 50 + f",
-            "at f_s/2 − f",
-        ],
-    );
-    for freq in EXCITATIONS_HZ {
-        for (name, reading) in [
-            ("timing", context.timing_reading()),
-            ("support", context.support_reading(freq)?),
-        ] {
-            for rate in [context.sample_rate_hz(), FAST_RATE_HZ] {
-                let lines = measured_lines(context, freq, rate, reading)?;
-                let mut row = vec![
-                    Cell::Number(freq, 1),
-                    Cell::text(name),
-                    Cell::Number(rate, 3),
-                ];
-                row.extend(lines.into_iter().map(|line| match line {
-                    None => Cell::text("above Nyquist"),
-                    Some(line) if line < NO_LINE_M => Cell::text("none"),
-                    Some(line) => Cell::Number(1e6 * line, 3),
-                }));
-                table.rows.push(row);
-            }
-        }
-    }
-    Ok(table)
-}
-
 fn pictures(context: &Context) -> Result<Vec<Block>, ReproduceError> {
-    let freq = 3.0;
+    let freq = PICTURED_HZ;
     let mut blocks = Vec::new();
     for (stem, rate) in [
         ("readings-100hz", context.sample_rate_hz()),

@@ -166,13 +166,18 @@ fn spectrogram(segments: &[(f64, f64, simgap_signal::spectrum::Spectrum)]) -> Bl
 
 /// Height of the excitation and of the image when the sweep passes whole frequencies.
 fn lines(context: &Context, segments: &[(f64, f64, simgap_signal::spectrum::Spectrum)]) -> Table {
+    let middle = 0.25 * context.sample_rate_hz();
+    let (below, above) = (
+        format!("strongest below {middle} Hz [Hz]"),
+        format!("strongest above {middle} Hz [Hz]"),
+    );
     let mut table = Table::new(
         "Lines of the sweep as it passes",
         &[
             "f [Hz]",
-            "strongest below 25 Hz [Hz]",
+            &below,
             "its bin [µm]",
-            "strongest above 25 Hz [Hz]",
+            &above,
             "its bin [µm]",
             "50 − f [Hz]",
             "ratio",
@@ -181,7 +186,7 @@ fn lines(context: &Context, segments: &[(f64, f64, simgap_signal::spectrum::Spec
     );
     let strongest = |found: &simgap_signal::spectrum::Spectrum, above: bool| {
         let bins = found.freq_hz.iter().zip(&found.amplitude);
-        bins.filter(|(freq, _)| (**freq > 25.0) == above)
+        bins.filter(|(freq, _)| (**freq > middle) == above)
             .max_by(|a, b| a.1.total_cmp(b.1))
             .map_or((f64::NAN, f64::NAN), |(freq, amplitude)| {
                 (*freq, *amplitude)

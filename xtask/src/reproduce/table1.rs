@@ -7,6 +7,7 @@ use simgap_integrate::inverse::Differentiator;
 use simgap_report::chart::{LineChart, Role, Series};
 
 use super::simulated::response;
+use super::three_unknowns::least_squares;
 use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table, significant};
 
 /// Force step, N. The paper does not print its own; the response is proportional to it.
@@ -15,9 +16,15 @@ const STEP_N: f64 = 10_000.0;
 /// Sampling of the step response, s: the peak is read between samples by a parabola.
 const STEP_SAMPLING_S: f64 = 1e-3;
 
-/// Relative tolerance of the values read off the step response: a parabola through three samples
-/// 1 ms apart misses the peak by less than 1e-6 of it, the last sample is e^-14 away from rest.
-const STEP_TOLERANCE: f64 = 1e-4;
+/// Relative tolerance of the values read off the step response. At the peak the velocity has the third derivative
+/// −2 ζω_n of the second, so that the vertex of a parabola through three samples h apart is off by at most
+/// (1/3 + 1/4) ζω_n h², the mass, which goes with the square of the time of the peak, by twice its share.
+fn step_tolerance(context: &Context) -> f64 {
+    let mold = &context.mold;
+    let decay = mold.damping_ratio() * TAU * mold.natural_freq_hz();
+    let peak_s = 0.5 / mold.damped_freq_hz().unwrap_or(f64::NAN);
+    2.0 * (7.0 / 12.0) * decay * STEP_SAMPLING_S * STEP_SAMPLING_S / peak_s
+}
 
 /// Mass, damping ratio and stiffness read off a step response.
 pub(crate) struct StepReading {
@@ -84,7 +91,9 @@ fn beside(context: &Context, read: &StepReading, share: f64) -> Vec<Comparison> 
 pub(crate) fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
     let response = response(&context.mold, &|_| STEP_N, STEP_SAMPLING_S, 3001)?;
     let read = read_step(&response, STEP_SAMPLING_S, STEP_N);
-    Ok(read.map_or_else(Vec::new, |read| beside(context, &read, STEP_TOLERANCE)))
+    Ok(read.map_or_else(Vec::new, |read| {
+        beside(context, &read, step_tolerance(context))
+    }))
 }
 
 /// Time in which the pressure of the step rises, s. **Assumed**, as the step itself.
@@ -93,9 +102,11 @@ const RISE_S: f64 = 0.05;
 /// Length of a weight of the weak form, s, and how far one lies from the next.
 const WEIGHT_S: [f64; 2] = [0.8, 0.05];
 
-/// Relative tolerance of Table 1 from the pressure: the trapezoidal sums of the weak form at 0.01 s leave out what the
+/// Relative tolerance of Table 1 from the pressure: the trapezoidal sums of the weak form leave out what the
 /// force has above half the sample rate, 1/(2πf RISE_S)² of it.
-const PRESSURE_TOLERANCE: f64 = 5e-3;
+fn pressure_tolerance(context: &Context) -> f64 {
+    (TAU * 0.5 * context.sample_rate_hz() * RISE_S).powi(-2)
+}
 
 /// Displacement and pressure force of a step at the paper's sampling: 4 s.
 fn pressure_step(context: &Context) -> Result<[Vec<f64>; 2], ReproduceError> {
@@ -177,45 +188,14 @@ fn reading([mass_kg, damping, stiffness]: [f64; 3]) -> Option<StepReading> {
     })
 }
 
-/// Three unknowns by normal equations, each column scaled to one.
-fn least_squares(rows: &[[f64; 3]], right: &[f64]) -> Option<[f64; 3]> {
-    let scale = [0, 1, 2].map(|j| rows.iter().map(|row| row[j] * row[j]).sum::<f64>().sqrt());
-    let mut system = [[0.0; 4]; 3];
-    for (row, value) in rows.iter().zip(right) {
-        for i in 0..3 {
-            for j in 0..3 {
-                system[i][j] += row[i] * row[j] / (scale[i] * scale[j]);
-            }
-            system[i][3] += row[i] * value / scale[i];
-        }
-    }
-    for at in 0..3 {
-        let pivot = system[at][at];
-        if pivot.is_nan() || pivot <= 1e-12 {
-            return None;
-        }
-        for below in at + 1..3 {
-            let factor = system[below][at] / pivot;
-            for j in at..4 {
-                system[below][j] -= factor * system[at][j];
-            }
-        }
-    }
-    let mut found = [0.0; 3];
-    for at in (0..3).rev() {
-        let known: f64 = (at + 1..3).map(|j| system[at][j] * found[j]).sum();
-        found[at] = (system[at][3] - known) / system[at][at];
-    }
-    Some([0, 1, 2].map(|j| found[j] / scale[j]))
-}
-
 /// Table 1 from the pressure force of a step: without derivatives, and through Park's formula.
 pub(crate) fn pressure_comparisons(
     context: &Context,
 ) -> Result<[Vec<Comparison>; 2], ReproduceError> {
     let step = pressure_step(context)?;
+    let tolerance = pressure_tolerance(context);
     let list = |read: Option<StepReading>| {
-        read.map_or_else(Vec::new, |read| beside(context, &read, PRESSURE_TOLERANCE))
+        read.map_or_else(Vec::new, |read| beside(context, &read, tolerance))
     };
     Ok([
         list(weak_form(context, &step)),
@@ -223,7 +203,12 @@ pub(crate) fn pressure_comparisons(
     ])
 }
 
-/// Numbers of samples up to 100 s for which the printed frequency is a bin, and the one nearest to the natural
+/// Lengths of the records that are asked for the bin, s: with shorter ones no bin is as fine as the printed digits are apart
+/// from the natural frequency, longer ones are no records of one excitation.
+const LONGEST_S: f64 = 100.0;
+const SHORTEST_S: f64 = 1.0;
+
+/// Numbers of samples for which the printed frequency is a bin, and the one nearest to the natural
 /// frequency of Table 1.
 pub(crate) fn bins(context: &Context) -> Vec<usize> {
     let printed = context.stated.first_natural_freq.printed();
@@ -231,7 +216,9 @@ pub(crate) fn bins(context: &Context) -> Vec<usize> {
         .split_once('.')
         .map_or(0, |(_, decimals)| decimals.len());
     let step = context.time_step_s();
-    (100..=10_000)
+    let [shortest, longest] =
+        [SHORTEST_S, LONGEST_S].map(|length| (length / step).round() as usize);
+    (shortest..=longest)
         .filter(|count| {
             let length = *count as f64 * step;
             let bin = (context.mold.natural_freq_hz() * length).round() / length;
@@ -252,7 +239,7 @@ fn bin_text(context: &Context) -> String {
     let natural = context.mold.natural_freq_hz();
     let Some(count) = found.first() else {
         return format!(
-            "No record up to 100 s has {stated} Hz as the bin nearest to {} Hz.",
+            "No record up to {LONGEST_S} s has {stated} Hz as the bin nearest to {} Hz.",
             significant(natural, 5)
         );
     };
@@ -260,7 +247,7 @@ fn bin_text(context: &Context) -> String {
     format!(
         "**{stated} Hz is a bin.** The spectrum of {count} samples at {} s, {} s and one sample more, has bins {} Hz apart, and the one nearest to the natural \
          frequency {} Hz of Table 1 is {} Hz, which prints as {stated}. It is the shortest record of which that is true; of those up to \
-         100 s {} are like it: {} samples. How long the paper's was is not printed. So the paper's first natural frequency is that of its Table 1, read off the nearest bin, if its record had one of these lengths: within the resolution \
+         {LONGEST_S} s {} are like it: {} samples. How long the paper's was is not printed. So the paper's first natural frequency is that of its Table 1, read off the nearest bin, if its record had one of these lengths: within the resolution \
          (tolerance: half a bin, {} Hz), and no sign of another mass or damping.",
         context.stated.time_step.printed(),
         (length - context.time_step_s()).round(),
@@ -285,9 +272,10 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
             "The paper reads mass, damping ratio and stiffness off the response to a step. The step is \
              not printed; here the printed values drive a 1-DOF simulation of a {} kN step, and the same \
              reading is taken from it. That it returns the printed values shows the chain to be \
-             consistent, not that the machine has them. Tolerance: the reading from samples {} ms apart, \
-             {STEP_TOLERANCE} of the value.",
+             consistent, not that the machine has them. Tolerance: {} of the value, by which a parabola through samples {} ms \
+             apart misses the time of the peak.",
             STEP_N / 1e3,
+            significant(step_tolerance(context), 2),
             1e3 * STEP_SAMPLING_S
         )),
         Block::Table(Table::comparisons("Table 1", &comparisons(context)?)),
@@ -306,7 +294,7 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
             1e3 * RISE_S,
             context.stated.time_step.printed(),
             WEIGHT_S[0],
-            1e2 * PRESSURE_TOLERANCE,
+            significant(1e2 * pressure_tolerance(context), 2),
         )),
         Block::Table(Table::comparisons(
             "Table 1 from the pressure force of a step, weak form",

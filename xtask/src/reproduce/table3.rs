@@ -179,7 +179,7 @@ fn weight(context: &Context) -> Table {
         // Which of the six a0 the text means it does not say.
         tolerance: spread(&centres) * stated.value(),
     };
-    Table::comparisons("Section 2.1.4: 1.0355 tons", &[row])
+    Table::comparisons(&format!("Section 2.1.4: {} tons", stated.printed()), &[row])
 }
 
 fn damping(context: &Context) -> Result<Table, ReproduceError> {

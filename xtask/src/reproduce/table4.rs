@@ -18,6 +18,18 @@ use super::{Block, Cell, Comparison, Context, Page, ReproduceError, Table, signi
 /// ([Table 1](table1.md)).
 const RECORD_S: f64 = 20.0;
 
+/// Of the usual windows of a spectrum the one that makes least of where a line lies between two bins.
+const WINDOW: Window = Window::BlackmanHarris;
+
+/// What the height of a line may be low by when it is read off the nearest bin, relative: a tone half a bin off.
+pub(crate) fn height_off_a_bin() -> Result<f64, ReproduceError> {
+    let (count, bin) = (1000_usize, 100_usize);
+    let turn = std::f64::consts::TAU * (bin as f64 + 0.5) / count as f64;
+    let tone: Vec<f64> = (0..count).map(|n| (turn * n as f64).sin()).collect();
+    let found = spectrum(&tone, count as f64, WINDOW, Trend::Mean)?;
+    Ok(1.0 - found.amplitude[bin])
+}
+
 /// What ω, twice the frequency of a line, may be off, Hz: each line by the resolution 1/T of the
 /// record, and half a unit of the last digit printed.
 fn base_tolerance(printed: &simgap_tables::PrintedValue) -> f64 {
@@ -51,7 +63,7 @@ pub(crate) fn beat_of(
 /// Table 4 beside the beat part of the records rebuilt with the one timing error.
 fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
     let mut rows = Vec::new();
-    let (_, _, scatter) = proportional(context);
+    let low = height_off_a_bin()?;
     for row in &context.table4.rows {
         let freq = row.excitation.si();
         let beat = beat_of(context, freq, context.timing_reading())?.parameters;
@@ -67,8 +79,7 @@ fn comparisons(context: &Context) -> Result<Vec<Comparison>, ReproduceError> {
             ours,
             tolerance,
         };
-        // What the paper calls proportional scatters by as much.
-        let tolerance = scatter * row.amplitude.si();
+        let tolerance = low * row.amplitude.si();
         rows.push(compare(
             "F0",
             "N",
@@ -103,12 +114,12 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
              Eq. (3), the Fourier part is taken out, and F0 cos(δt/2) cos((ω+δ)t/2), read with cycles, is fitted to what is \
              left. At the paper's rate the two lines of a beat about 50 Hz fold onto one another: that its carrier is \
              50 Hz, and that there is a line above it, is the form of the fit and not a finding, for \
-             the paper as for us.\n\nTolerances: for F0 {} %, by which the printed F0 scatter about the line through zero that \
-             the paper calls proportional; for ω and δ, twice the resolution 1/T of a record of T = {RECORD_S} s (a record of that \
+             the paper as for us.\n\nTolerances: for F0 {} %, by which the height of a line is low when it is read off the nearest bin of a \
+             spectrum, as Fig. 6 shows them, with the window that makes least of it (Blackman-Harris); for ω and δ, twice the resolution 1/T of a record of T = {RECORD_S} s (a record of that \
              length has a bin at {} Hz, [Table 1](table1.md)) and half a unit of the last digit printed.",
             significant(1e3 * context.timing.value, 3),
             significant(1e3 * context.timing.standard_error, 1),
-            significant(1e2 * proportional(context).2, 2),
+            significant(1e2 * height_off_a_bin()?, 2),
             context.stated.first_natural_freq.printed(),
         )),
         Block::Table(Table::comparisons("Table 4", &rows)),

@@ -1,4 +1,4 @@
-//! Seven readings of the lines at 50 − f, each with one number for the six F0 of Table 4.
+//! Readings of the lines at 50 − f, each with one number for the six F0 of Table 4.
 
 use simgap_alpha::{RateFormula, force_gain};
 use simgap_signal::peaks::Peak;
@@ -62,7 +62,12 @@ pub(crate) const FROM_REST: &str = "Eq. (4) as printed, from rest";
 /// Name of what is flat in f.
 pub(crate) const GAIN: &str = "a gain or a carrier times the displacement";
 
-/// The seven readings, and interpolation, which is excluded by its shape.
+/// Name of a tilt, which grows as f².
+pub(crate) const TILT: &str = "a carrier times a tilt, in step with the acceleration";
+/// Name of interpolation, which grows as f².
+pub(crate) const INTERPOLATION: &str = "interpolation of every other sample";
+
+/// The seven readings, and two that are excluded by their shape.
 pub(crate) fn trials(context: &Context) -> Result<Vec<Trial>, ReproduceError> {
     let (step, amplitude) = (context.time_step_s(), context.amplitude());
     let base = context.stated.image_base.si();
@@ -91,6 +96,8 @@ pub(crate) fn trials(context: &Context) -> Result<Vec<Trial>, ReproduceError> {
     let line = each(&|f| Ok(f))?;
     let rest = from_rest(context)?;
     let displacement = each(&|f| Ok(gain(f)? * amplitude))?;
+    // A sensor, or the mold under it, tilts with the force that accelerates: p ÿ of the displacement.
+    let tilted = each(&|f| Ok(gain(f)? * amplitude * omega(f) * omega(f)))?;
     // Every other sample is the mean of its neighbours: (−1)ⁿ y (1 − cos ωh)/2.
     let interpolated = each(&|f| Ok(gain(f)? * 0.5 * amplitude * (1.0 - (omega(f) * step).cos())))?;
     Ok(vec![
@@ -116,9 +123,10 @@ pub(crate) fn trials(context: &Context) -> Result<Vec<Trial>, ReproduceError> {
         trial(context, LINE, "N per Hz", &line),
         trial(context, FROM_REST, "scale", &rest),
         trial(context, GAIN, "share", &displacement),
+        trial(context, TILT, "displacement for each m/s² [s²]", &tilted),
         trial(
             context,
-            "interpolation of every other sample",
+            INTERPOLATION,
             "scale (1 if it were so)",
             &interpolated,
         ),

@@ -4,7 +4,7 @@ use super::super::Verdict;
 
 /// A claim, judged by a computed condition.
 pub(in super::super) struct Claim {
-    pub(super) claim: &'static str,
+    pub(super) claim: String,
     pub(super) place: &'static str,
     pub(super) verdict: Verdict,
     pub(super) because: String,
@@ -13,7 +13,7 @@ pub(in super::super) struct Claim {
 impl Claim {
     /// The verdict is `then` if the condition holds, and not reproducible otherwise.
     pub(super) fn judged(
-        claim: &'static str,
+        claim: impl Into<String>,
         place: &'static str,
         (holds, then): (bool, Verdict),
         because: impl Into<String>,
@@ -24,7 +24,7 @@ impl Claim {
             Verdict::NotReproducible
         };
         Self {
-            claim,
+            claim: claim.into(),
             place,
             verdict,
             because: because.into(),

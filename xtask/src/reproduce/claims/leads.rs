@@ -2,15 +2,36 @@
 
 use simgap_alpha::{ConverterFault, Explanation, RateFormula, leads};
 
-use super::super::context::PARK;
-use super::super::readings::part_at_the_fast_rate_only;
+use super::super::context::{FAST_RATE_HZ, PARK};
+use super::super::machine;
+use super::super::page::print_resolution;
+use super::super::servo::Servo;
+use super::super::two_rates::part_at_the_fast_rate_only;
 use super::super::{Context, ReproduceError, Verdict, significant};
 use super::Claim;
 use super::tables::spread_of_centre;
 
-/// Whether a number rounds to one given with three decimals.
-fn to_three_decimals(value: f64, given: f64) -> bool {
-    (value - given).abs() < 5e-4
+/// A figure as the lead gives it: what is claimed, and what is checked.
+struct Given {
+    printed: &'static str,
+}
+
+impl Given {
+    const fn new(printed: &'static str) -> Self {
+        Self { printed }
+    }
+
+    /// Whether a number rounds to it.
+    fn is(&self, value: f64) -> bool {
+        let given: f64 = self.printed.parse().unwrap_or(f64::NAN);
+        (value - given).abs() <= print_resolution(self.printed)
+    }
+}
+
+impl std::fmt::Display for Given {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.printed)
+    }
 }
 
 fn explained(found: &Explanation) -> String {
@@ -29,15 +50,20 @@ pub(super) fn on_timing(context: &Context) -> Result<Vec<Claim>, ReproduceError>
     let step = context.time_step_s();
     let park = PARK.rate(0.5 / step, step)?.norm();
     let true_rate = RateFormula::Exact.rate(0.5 / step, step)?.norm();
-    let one_number = to_three_decimals(1e3 * timing.value, 0.617)
-        && to_three_decimals(timing.r_squared, 0.994)
-        && to_three_decimals(timing.worst_relative_error, 0.063);
-    let less_well = to_three_decimals(exact.r_squared, 0.988)
-        && (exact.worst_relative_error - 0.14).abs() < 5e-3;
-    let rates = (park - 533.0).abs() < 0.5 && (true_rate - 314.0).abs() < 0.5;
+    let [late_ms, fits, worst] = ["0.617", "0.994", "6.3"].map(Given::new);
+    let [exact_fits, exact_worst] = ["0.988", "14"].map(Given::new);
+    let [park_rate, exact_rate] = ["533", "314"].map(Given::new);
+    let one_number = late_ms.is(1e3 * timing.value)
+        && fits.is(timing.r_squared)
+        && worst.is(1e2 * timing.worst_relative_error);
+    let less_well =
+        exact_fits.is(exact.r_squared) && exact_worst.is(1e2 * exact.worst_relative_error);
+    let rates = park_rate.is(park) && exact_rate.is(true_rate);
     Ok(vec![
         Claim::judged(
-            "one alternating timing error gives all six F0: 0.617 ms, R² 0.994, 6.3 %",
+            format!(
+                "one alternating timing error gives all six F0: {late_ms} ms, R² {fits}, {worst} %"
+            ),
             "Table 4, Park's formula",
             (one_number, Verdict::Reproduced),
             explained(timing),
@@ -49,13 +75,15 @@ pub(super) fn on_timing(context: &Context) -> Result<Vec<Claim>, ReproduceError>
             format!("R² = {}", significant(gain.r_squared, 2)),
         ),
         Claim::judged(
-            "the exact derivative does it less well: R² 0.988, 14 %",
+            format!("the exact derivative does it less well: R² {exact_fits}, {exact_worst} %"),
             "Table 4",
             (less_well, Verdict::Reproduced),
             explained(&exact),
         ),
         Claim::judged(
-            "at the Nyquist frequency Park's gain is 533 1/s, the true factor 314 1/s",
+            format!(
+                "at the Nyquist frequency Park's gain is {park_rate} 1/s, the true factor {exact_rate} 1/s"
+            ),
             "2.1.3",
             (rates, Verdict::Reproduced),
             format!(
@@ -65,11 +93,14 @@ pub(super) fn on_timing(context: &Context) -> Result<Vec<Claim>, ReproduceError>
             ),
         ),
         Claim::judged(
-            "the published data cannot decide between timing, support and a modulated 50 Hz carrier; sampling at 250 Hz \
-             or more would",
+            "the published data cannot decide between timing, support and a modulated carrier at half the sample rate; sampling \
+             much faster would",
             "Tables 2, 4",
             (part_at_the_fast_rate_only(context)?, Verdict::Reproduced),
-            "rebuilt records of both readings have a line at 50 − f at 100 Hz and different lines at 500 Hz ([readings](readings.md))",
+            format!(
+                "rebuilt records of both readings have a line at 50 − f at {} Hz and different lines at {FAST_RATE_HZ} Hz ([readings](readings.md))",
+                context.sample_rate_hz()
+            ),
         ),
     ])
 }
@@ -88,11 +119,13 @@ pub(super) fn on_damping(context: &Context) -> Result<Vec<Claim>, ReproduceError
         .iter()
         .map(share)
         .collect::<Result<Vec<f64>, _>>()?;
-    let given = [0.53, 0.46, 0.44, 0.38];
+    let given = ["0.53", "0.46", "0.44", "0.38"].map(Given::new);
     let agree = shares
         .iter()
-        .zip(given)
-        .all(|(share, given)| (share - given).abs() < 5e-3);
+        .zip(&given)
+        .all(|(share, given)| given.is(*share));
+    let stated_shares = given.map(|given| given.printed).join(", ");
+    let [given_ratio, given_mass] = ["0.135", "33.615"].map(Given::new);
     let shown: Vec<String> = shares.iter().map(|share| significant(*share, 2)).collect();
     let left = |share: f64| significant((1.0 - share) * mold.damping_ratio(), 2);
     let stated = context.stated.first_natural_freq.si();
@@ -100,21 +133,25 @@ pub(super) fn on_damping(context: &Context) -> Result<Vec<Claim>, ReproduceError
     let mass = leads::mass_of_natural_freq(mold.stiffness(), stated)?;
     Ok(vec![
         Claim::judged(
-            "as a damping error, Table 3 lowers c by 0.53, 0.46, 0.44, 0.38 at 1 to 4 Hz",
+            format!("as a damping error, Table 3 lowers c by {stated_shares} at 1 to 4 Hz"),
             "Table 3",
             (agree, Verdict::Reproduced),
             format!(
-                "{}; ζ {} to {} instead of 0.3. Not beyond: 5 Hz would need negative damping, 6 Hz does not fit",
+                "{}; ζ {} to {} instead of {}. Not beyond: 5 Hz would need negative damping, 6 Hz does not fit",
                 shown.join(", "),
                 left(shares[0]),
-                left(shares[3])
+                left(shares[3]),
+                context.table1.damping_ratio.printed()
             ),
         ),
         Claim::judged(
-            "2.499 Hz is the damped frequency at ζ = 0.135, or the natural one of 33.615 t",
+            format!(
+                "{} Hz is the damped frequency at ζ = {given_ratio}, or the natural one of {given_mass} t",
+                context.stated.first_natural_freq.printed()
+            ),
             "3.1",
             (
-                to_three_decimals(ratio, 0.135) && to_three_decimals(1e-3 * mass, 33.615),
+                given_ratio.is(ratio) && given_mass.is(1e-3 * mass),
                 Verdict::Reproduced,
             ),
             format!(
@@ -150,6 +187,55 @@ pub(super) fn on_the_rest(context: &Context) -> Result<Vec<Claim>, ReproduceErro
                 "{} N peak to peak against {} N printed ([Table 3](table3.md))",
                 significant(own, 4),
                 last.peak_to_peak.printed()
+            ),
+        ),
+    ])
+}
+
+/// What two cylinders and their servo say of k₁ and K.
+pub(super) fn on_the_machine(context: &Context) -> Result<Vec<Claim>, ReproduceError> {
+    let needed = machine::bulk_modulus_of_k1(context)?;
+    let [least, most] = machine::BULK_MODULUS_OF_OIL_PA;
+    let servo = Servo::new(context)?;
+    let rows = &context.table3.rows;
+    let tenth = 0.1 * rows[4].peak_to_peak.si();
+    let between = (rows[5].peak_to_peak.si()..rows[3].peak_to_peak.si()).contains(&tenth);
+    Ok(vec![
+        Claim::judged(
+            "k₁ is the size of shut oil in two cylinders",
+            "Table 5",
+            ((least..=most).contains(&needed), Verdict::Reproduced),
+            format!(
+                "two of {} m² over {} mm of oil, assumed, take {} GPa for it; mineral oil has {} to {} GPa ([the machine](machine.md))",
+                machine::CYLINDER[0],
+                significant(1e3 * machine::CYLINDER[1], 2),
+                significant(1e-9 * needed, 3),
+                significant(1e-9 * least, 2),
+                significant(1e-9 * most, 2)
+            ),
+        ),
+        Claim::judged(
+            "K of Table 1 is the stiffness of the servo",
+            "Table 1",
+            (servo.leaks_little(), Verdict::Reproduced),
+            format!(
+                "with c of Table 1 it takes a leak of {} l/min at the supply pressure, {} times what the valves assumed pass at their rated \
+                 drop; the servo assumed is {} times as stiff ([the machine](machine.md))",
+                significant(servo.leak_l_per_min, 3),
+                significant(servo.leak_share, 2),
+                significant(servo.times_as_stiff, 3)
+            ),
+        ),
+        Claim::judged(
+            format!(
+                "{} N is a misplaced decimal",
+                rows[4].peak_to_peak.printed()
+            ),
+            "Table 3",
+            (between, Verdict::Reproduced),
+            format!(
+                "a tenth of it, {} N, would lie between its neighbours; nothing printed says that it is so",
+                significant(tenth, 6)
             ),
         ),
     ])

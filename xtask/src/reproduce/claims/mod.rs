@@ -14,7 +14,7 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     let mut paper = tables::on_table_1(context)?;
     paper.extend(tables::on_table_2(context)?);
     paper.extend(tables::on_table_3(context)?);
-    paper.extend(tables::on_table_4(context));
+    paper.extend(tables::on_table_4(context)?);
     paper.extend(models::on_one_mass(context)?);
     paper.extend(motion::on_beats(context)?);
     paper.extend(motion::on_harmonics(context));
@@ -24,6 +24,7 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
     let mut found = leads::on_timing(context)?;
     found.extend(leads::on_damping(context)?);
     found.extend(leads::on_the_rest(context)?);
+    found.extend(leads::on_the_machine(context)?);
     found.extend(motion::on_steady_state(context)?);
     let count = |verdict: Verdict| {
         paper
@@ -45,7 +46,7 @@ pub(crate) fn page(context: &Context) -> Result<Page, ReproduceError> {
         blocks: vec![
             Block::Text(format!(
                 "In short: {summary}. Each verdict is computed, and changes when the condition behind it fails; but for \
-                 those on what is lost or not printed: the measured step, the phases, what the machine did."
+                 that on the measured step, which is lost."
             )),
             Block::Table(table("Claims of the paper", &paper)),
             Block::Table(table("Leads: what the printed numbers imply", &found)),
@@ -62,7 +63,7 @@ fn table(title: &str, claims: &[Claim]) -> Table {
     let mut table = Table::new(title, &["claim", "where", "verdict", "because"]);
     for claim in claims {
         table.rows.push(vec![
-            Cell::text(claim.claim),
+            Cell::text(&claim.claim),
             Cell::text(claim.place),
             Cell::text(claim.verdict.text()),
             Cell::text(&claim.because),
