@@ -6,13 +6,16 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::solve::{self, LawLanes};
 use super::{LANES, Mask, Pack};
-use crate::exact::law::{Followed, ForceLaw, MemberMotion};
+use crate::exact::law::{Followed, ForceLaw, MemberMotion, Tangent};
 
 /// One law with the parameters of eight sets. Made by [`gather`], or lane by lane for laws that
 /// do not offer [`ForceLaw::lanes`].
 pub trait LaneLaw: Send + Sync {
     /// Solves one element for the end of a step, the others held.
     fn solve(&self, arch: Arch, element: &mut ElementLanes);
+
+    /// Force and slope at the motion of the element, for laws that are solved together.
+    fn tangent(&self, arch: Arch, element: &mut ElementLanes);
 
     /// Commits the memory at the end of a step.
     fn remember(&self, arch: Arch, element: &mut ElementLanes);
@@ -44,6 +47,8 @@ pub struct ElementLanes {
     pub(super) memory: Pack,
     /// Displacement, velocity and time at the start of the step, for a law that remembers.
     pub(super) from: [Pack; 3],
+    /// Force and its slope over the velocity, for a law that is solved with others.
+    pub(super) tangent: [Pack; 2],
     /// Sets that still iterate; afterwards those whose forces changed.
     pub(super) open: Mask,
 }
@@ -85,6 +90,11 @@ impl<L: ForceLaw, F: Fn([f64; K]) -> L, const K: usize> LawLanes for Gathered<F,
     }
 
     #[inline(always)]
+    fn tangent(&self, lane: usize, motion: MemberMotion) -> Tangent {
+        self.law(lane).tangent(motion)
+    }
+
+    #[inline(always)]
     fn follow(
         &self,
         lane: usize,
@@ -111,6 +121,10 @@ where
         arch.dispatch(Solve(self, element));
     }
 
+    fn tangent(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Tangents(self, element));
+    }
+
     fn remember(&self, arch: Arch, element: &mut ElementLanes) {
         arch.dispatch(Remember(self, element));
     }
@@ -125,6 +139,18 @@ impl<L: LawLanes> WithSimd for Solve<'_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         solve::solve(simd, self.0, self.1);
+    }
+}
+
+/// [`solve::tangent`] likewise.
+struct Tangents<'a, L>(&'a L, &'a mut ElementLanes);
+
+impl<L: LawLanes> WithSimd for Tangents<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        solve::tangent(self.0, self.1);
     }
 }
 
@@ -150,6 +176,11 @@ impl LawLanes for OneByOne<'_> {
     }
 
     #[inline(always)]
+    fn tangent(&self, lane: usize, motion: MemberMotion) -> Tangent {
+        self.0[lane].tangent(motion)
+    }
+
+    #[inline(always)]
     fn follow(
         &self,
         lane: usize,
@@ -171,6 +202,10 @@ impl LawLanes for OneByOne<'_> {
 impl LaneLaw for OneByOne<'_> {
     fn solve(&self, arch: Arch, element: &mut ElementLanes) {
         arch.dispatch(Solve(self, element));
+    }
+
+    fn tangent(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Tangents(self, element));
     }
 
     fn remember(&self, arch: Arch, element: &mut ElementLanes) {

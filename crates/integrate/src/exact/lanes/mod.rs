@@ -11,11 +11,13 @@
 
 mod batch;
 mod block;
+mod compact;
 mod kernel;
 mod law;
 mod row;
 mod solve;
 mod source;
+mod together;
 mod wide;
 
 pub use batch::{Batch, LaneObserver, LaneSet, LaneSnapshot};
