@@ -187,23 +187,21 @@ impl Compact {
         let at = |&i: &usize| if i < n { x[i] } else { v[i - n] };
         self.column.extend(self.moving.iter().map(at));
         self.sums.fill(Pack::ZERO);
-        self.step.add_product(self.arch, &self.column, &mut self.sums);
+        self.step
+            .add_product(self.arch, &self.column, &mut self.sums);
         self.deliver(next);
     }
 
     /// Adds Γ₁ f to `next`, f being zero where no element pushes.
-    pub(super) fn push_end<R: Row>(
-        &mut self,
-        force: &[Pack],
-        next: &mut State<R>,
-    ) {
+    pub(super) fn push_end<R: Row>(&mut self, force: &[Pack], next: &mut State<R>) {
         let (x, v) = (next.displacement.packs(), next.velocity.packs());
         let n = x.len();
         self.column.clear();
         self.column.extend(self.joined.iter().map(|i| force[*i]));
         self.sums[..n].copy_from_slice(x);
         self.sums[n..2 * n].copy_from_slice(v);
-        self.end.add_product(self.arch, &self.column, &mut self.sums);
+        self.end
+            .add_product(self.arch, &self.column, &mut self.sums);
         self.deliver(next);
     }
 
