@@ -123,6 +123,7 @@ impl Layout {
             }
         }
         layout.phases = layout.phases_of_clocks();
+        let first_order = problem.model.first_order();
         for run in 0..layout.middle_s.len() {
             for (own, (e, i)) in layout.own_values.clone().into_iter().enumerate() {
                 if layout.phases.iter().any(|(phase, _)| *phase == own) {
@@ -134,8 +135,12 @@ impl Layout {
                 layout.push_parameter(parameter, value, f64::INFINITY);
                 layout.set_prior(problem.prior(&start.effects[e], i), parameter);
             }
-            for &scale in &state_scale {
+            for (i, &scale) in state_scale.iter().enumerate() {
                 layout.push(scale, [f64::NEG_INFINITY, f64::INFINITY]);
+                // The integral of a pressure enters no equation.
+                if first_order.get(i) == Some(&true) {
+                    layout.hold_last(0.0);
+                }
             }
         }
         layout

@@ -67,7 +67,7 @@ pub use body::{Body, Point};
 pub use error::ModelError;
 pub use file::SCHEMA;
 pub use frf::{FrfKind, frequency_response};
-pub use hydraulics::{Cylinder, DriveValue, PRESSURE_UNIT_PA, Valve};
+pub use hydraulics::{Cylinder, DriveValue, Edges, PRESSURE_UNIT_PA, Valve};
 pub use matrices::StructuralMatrices;
 pub use model::{Model, same_pair};
 pub use modes::{

@@ -1,5 +1,7 @@
 """What records and models are made of."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas
 import polars
@@ -111,6 +113,72 @@ def test_a_model_is_built_part_by_part(axis_folder):
     assert simgap.Model.from_toml(odd.to_toml()) == odd
     picture = built._repr_html_()
     assert picture.count("<svg") == 2 and "bellows" in picture
+
+
+def test_a_mold_on_cylinders_is_built_part_by_part():
+    """Every table of ``fixtures/mold-on-cylinders`` has its method."""
+    built = (
+        simgap.Model("mold on two cylinders")
+        .body("mold", mass=33000.0, inertia=19000.0)
+        .point("left", "mold", -1.5)
+        .point("right", "mold", 1.5)
+        .load("mold", -323730.0)
+    )
+    steel = {"youngs_modulus": 2.1e11, "density": 7850.0, "damping_ratio": 0.01}
+    for side in ("left", "right"):
+        ends = (f"mold.{side}", "ground")
+        built = (
+            built.beam(f"leaves {side}", ends, length=1.06, width=0.4, thickness=0.01, **steel)
+            .damper(f"guide {side}", ends, damping=150000.0)
+            .cylinder(
+                side,
+                ends,
+                areas=(0.02, 0.012),
+                dead_volumes=(5e-4, 5e-4),
+                stroke=0.08,
+                bulk_modulus=1.4e9,
+                leakage=1e-11,
+                pressures=(13.0e6, 8.17792e6),
+            )
+            .valve(
+                f"servo {side}",
+                side,
+                from_block=f"controller {side}",
+                rated_flow=3.3e-3,
+                rated_drop=3.5e6,
+                natural_freq=60.0,
+                damping_ratio=0.8,
+                supply=21e6,
+            )
+        )
+    built = built.block("reference", [1.0], [1.0])
+    for side in ("left", "right"):
+        signals = {"plus": ["reference"], "minus": [f"mold.{side}"]}
+        built = built.block(f"controller {side}", [60.0], [1.0], **signals)
+    built = built.input("r", at="reference", kind="set_point")
+    for side in ("left", "right"):
+        built = built.output(f"y_{side}", at=f"mold.{side}")
+    for side in ("left", "right"):
+        for chamber in ("p1", "p2"):
+            channel, node = f"{chamber}_{side}", f"{side}.{chamber}"
+            built = built.output(channel, at=node, kind="pressure")
+    path = Path(__file__).parents[3] / "fixtures" / "mold-on-cylinders" / "model.toml"
+    assert built == simgap.Model.from_file(path)
+    picture = built._repr_html_()
+    assert "servo left" in picture and "controller right" in picture
+    fewer = simgap.Model("beam").mass("m", 1.0).output("y", at="m")
+    fewer = fewer.beam(
+        "leaf",
+        ("m", "ground"),
+        length=1.0,
+        width=0.1,
+        thickness=0.01,
+        youngs_modulus=2.1e11,
+        density=7850.0,
+        elements=6,
+        modes=2,
+    )
+    assert "elements = 6" in fewer.to_toml() and "modes = 2" in fewer.to_toml()
 
 
 def test_what_is_wrong_with_a_model_is_told_in_one_line():

@@ -1,10 +1,12 @@
 //! A picture of a model: nodes from the ground outwards, what joins them, what drives it and what is measured.
 //!
-//! Points of a body stand beside it, joined by a plain line; a beam is a double line, a cylinder a piston in its tube. Valves,
-//! blocks and what drives them are not drawn.
+//! Points of a body stand beside it, joined by a plain line; a beam is a double line, a cylinder a piston in its tube. Blocks
+//! and valves stand below the machine ([`drives`]).
 //!
 //! Column d holds the nodes that are d members away from what does not move freely: the ground and, below all other rows,
 //! moving bases in column 0. Members between the same nodes lie beside each other.
+
+mod drives;
 
 use simgap_model::{GROUND, InputKind, Location, Model, same_pair};
 
@@ -50,12 +52,13 @@ pub fn schematic_svg(model: &Model) -> String {
     let rows = |node: &Node| (node.at[1] - FIRST[1]) / ROW;
     let most_rows = nodes.iter().map(rows).fold(0.0, f64::max);
     let columns = nodes.iter().map(|node| node.column).max().unwrap_or(0);
-    let width = FIRST[0] + columns as f64 * COLUMN + 130.0;
-    let height = FIRST[1] + most_rows * ROW + 80.0;
+    let right = FIRST[0] + columns as f64 * COLUMN + 130.0;
+    let below = FIRST[1] + most_rows * ROW + 80.0;
+    let drives = drives::drawn(model, below + 20.0);
     let ink = NEUTRAL_COLOURS[0].light;
     let mut body = String::new();
     if nodes.iter().any(|node| node.name == GROUND) {
-        body.push_str(&wall(height));
+        body.push_str(&wall(below));
     }
     for pair in joints(model) {
         let members = members_between(model, &pair);
@@ -74,8 +77,15 @@ pub fn schematic_svg(model: &Model) -> String {
         }
     }
     for node in nodes.iter().filter(|node| node.name != GROUND) {
-        body.push_str(&boxed(model, node));
+        body.push_str(&node_box(model, node));
     }
+    let (width, height) = match drives {
+        None => (right, below),
+        Some((signals, [to_right, to_bottom])) => {
+            body.push_str(&signals);
+            (right.max(to_right), to_bottom)
+        }
+    };
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          role=\"img\" font-family=\"sans-serif\" font-size=\"12\"><title>{}</title><rect width=\"100%\" height=\"100%\" \
@@ -311,23 +321,41 @@ fn member(shape: Shape, name: &str, from: [f64; 2], to: [f64; 2]) -> String {
 }
 
 /// A node, what drives it above and what is measured or acts on it below.
-fn boxed(model: &Model, node: &Node) -> String {
-    let [x, y] = node.at;
-    let [w, h] = BOX;
+fn node_box(model: &Model, node: &Node) -> String {
     let is_base = model.base_nodes().contains(&node.name.as_str());
+    let mut text = boxed(&node.name, node.at, BOX, is_base);
+    text.push_str(&driven(model, &node.name, node.at, BOX));
+    let acting = model.effects.iter().filter(|effect| match &effect.at {
+        Location::Between([a, b]) => *a == node.name || (*b == node.name && a == GROUND),
+        Location::Mass(mass) => *mass == node.name,
+        Location::Input(_) | Location::Channel(_) => false,
+    });
+    let mut lines = measured_at(model, &node.name);
+    lines.extend(acting.map(|effect| effect.kind.replace('_', " ")));
+    text.push_str(&lines_below(node.at, &lines));
+    text
+}
+
+/// A box with a name.
+fn boxed(name: &str, [x, y]: [f64; 2], [w, h]: [f64; 2], is_base: bool) -> String {
     let dashes = if is_base {
         " stroke-dasharray=\"5 3\""
     } else {
         ""
     };
-    let mut text = format!(
+    format!(
         "<rect x=\"{}\" y=\"{}\" width=\"{w}\" height=\"{h}\" rx=\"3\" fill=\"{}\"{dashes}/>{}",
         x - w / 2.0,
         y - h / 2.0,
         if is_base { "#FFFFFF" } else { "#EAEEF2" },
-        label([x, y + 4.0], &node.name)
-    );
-    let drives = model.inputs.iter().filter(|input| input.at == node.name);
+        label([x, y + 4.0], name)
+    )
+}
+
+/// What drives the part of a name, above its box.
+fn driven(model: &Model, name: &str, [x, y]: [f64; 2], [w, h]: [f64; 2]) -> String {
+    let mut text = String::new();
+    let drives = model.inputs.iter().filter(|input| input.at == name);
     for (k, input) in drives.enumerate() {
         let above = y - h / 2.0 - 10.0 - 15.0 * k as f64;
         let kind = match input.kind {
@@ -349,21 +377,26 @@ fn boxed(model: &Model, node: &Node) -> String {
             escape(&words)
         ));
     }
+    text
+}
+
+/// The channels that measure at a name.
+fn measured_at(model: &Model, name: &str) -> Vec<String> {
     let measured = model.outputs.iter().filter(|output| match &output.between {
-        Some([a, _]) => *a == node.name,
-        None => output.at.as_ref() == Some(&node.name),
+        Some([a, _]) => a == name,
+        None => output.at.as_deref() == Some(name),
     });
     let lines = measured.map(|output| format!("measured: {}", output.channel));
-    let acting = model.effects.iter().filter(|effect| match &effect.at {
-        Location::Between([a, b]) => *a == node.name || (*b == node.name && a == GROUND),
-        Location::Mass(mass) => *mass == node.name,
-        Location::Input(_) | Location::Channel(_) => false,
+    lines.collect()
+}
+
+/// Lines below a box.
+fn lines_below([x, y]: [f64; 2], lines: &[String]) -> String {
+    let places = lines.iter().enumerate().map(|(k, line)| {
+        let below = y + BOX[1] / 2.0 + 15.0 + 14.0 * k as f64;
+        label([x, below], line)
     });
-    let lines = lines.chain(acting.map(|effect| effect.kind.replace('_', " ")));
-    for (k, line) in lines.enumerate() {
-        text.push_str(&label([x, y + h / 2.0 + 15.0 + 14.0 * k as f64], &line));
-    }
-    text
+    places.collect()
 }
 
 #[cfg(test)]

@@ -1,28 +1,91 @@
 //! The orifices of valves as ports of the plant.
 
-use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, Port};
-use simgap_model::{Cylinder, Model, Node, PRESSURE_UNIT_PA, Valve};
+use simgap_integrate::exact::{Element, ForceLaw, LaneLaw, MemberMotion, Port, Tangent, gather};
+use simgap_model::{Cylinder, Edges, Model, Node, PRESSURE_UNIT_PA, Valve};
 
 /// Flow of a valve into a chamber beyond what is proportional to the spool, which the matrices hold,
 ///
 /// ```text
-/// F = −P (Q(x, p₀ + P q̇) − g x)
+/// F = −P (Q(x, p₀ + P q̇) − g x),   ∂F/∂q̇ = −P² ∂Q/∂p
 /// ```
 ///
 /// x is the position of the spool, q̇ the rate of the coordinate of the pressure, g the slope about p₀ ([`Valve::opening_gain`]),
 /// P the unit of pressure.
 struct Orifice {
-    valve: Valve,
-    chamber: usize,
+    edges: Edges,
     pressure: f64,
     gain: f64,
 }
 
+impl Orifice {
+    /// All numbers of it.
+    fn split(&self) -> [f64; 9] {
+        let e = &self.edges;
+        [
+            e.flow_gain,
+            e.overlap,
+            e.asymmetry,
+            e.supply,
+            e.tank,
+            e.supply_droop,
+            e.fills,
+            self.pressure,
+            self.gain,
+        ]
+    }
+
+    /// An orifice of the numbers of [`Orifice::split`].
+    #[inline(always)]
+    fn join(numbers: [f64; 9]) -> Orifice {
+        let [
+            flow_gain,
+            overlap,
+            asymmetry,
+            supply,
+            tank,
+            supply_droop,
+            fills,
+            pressure,
+            gain,
+        ] = numbers;
+        Orifice {
+            edges: Edges {
+                flow_gain,
+                overlap,
+                asymmetry,
+                supply,
+                tank,
+                supply_droop,
+                fills,
+            },
+            pressure,
+            gain,
+        }
+    }
+}
+
 impl ForceLaw for Orifice {
+    #[inline(always)]
     fn force(&self, motion: MemberMotion) -> f64 {
+        self.tangent(motion).force
+    }
+
+    fn has_tangent(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn tangent(&self, motion: MemberMotion) -> Tangent {
         let pressure = self.pressure + PRESSURE_UNIT_PA * motion.velocity;
-        let flow = self.valve.flow(self.chamber, motion.displacement, pressure);
-        -PRESSURE_UNIT_PA * (flow - self.gain * motion.displacement)
+        let [flow, slope] = self.edges.flow(motion.displacement, pressure);
+        Tangent {
+            force: -PRESSURE_UNIT_PA * (flow - self.gain * motion.displacement),
+            damping: -PRESSURE_UNIT_PA * PRESSURE_UNIT_PA * slope,
+        }
+    }
+
+    fn lanes(&self, peers: &[&dyn ForceLaw]) -> Option<Box<dyn LaneLaw>> {
+        gather(peers, Orifice::split, Orifice::join)
     }
 }
 
@@ -48,8 +111,7 @@ fn orifice(model: &Model, valve: &Valve, cylinder: &Cylinder, chamber: usize) ->
             force: [node, Node::Ground],
         },
         law: Box::new(Orifice {
-            valve: valve.clone(),
-            chamber,
+            edges: valve.edges(chamber),
             pressure,
             gain: valve.opening_gain(chamber, pressure),
         }),

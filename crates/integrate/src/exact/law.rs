@@ -60,6 +60,15 @@ impl Followed {
     }
 }
 
+/// A smooth force at a motion, and how it changes about it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tangent {
+    /// The single-valued part, N.
+    pub force: f64,
+    /// Its slope over the velocity, N s/m.
+    pub damping: f64,
+}
+
 /// A force carried between two nodes, positive when it resists a positive displacement of a from
 /// b, as a spring's `k d` does: it pushes a with −F and b with +F.
 ///
@@ -85,6 +94,21 @@ pub trait ForceLaw: Any + Send + Sync {
             ..motion
         };
         self.force(at_a_point) - self.force(motion)
+    }
+
+    /// Whether the law offers its [`ForceLaw::tangent`]: for a law of the velocity without a dry part and without memory,
+    /// whose displacement does not move with its own force within a step. Such laws are solved together, by Newton's
+    /// method, in place of one after the other.
+    fn has_tangent(&self) -> bool {
+        false
+    }
+
+    /// For a law that [`ForceLaw::has_tangent`]: the force with its slope.
+    fn tangent(&self, motion: MemberMotion) -> Tangent {
+        Tangent {
+            force: self.force(motion),
+            damping: 0.0,
+        }
     }
 
     /// Whether the force depends on the way the member came, not on where it is alone.

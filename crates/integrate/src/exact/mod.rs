@@ -8,9 +8,10 @@ mod law;
 mod march;
 mod plant;
 mod propagator;
+mod together;
 
 pub use expm::matrix_exponential;
 pub use lanes::{LaneLaw, gather};
-pub use law::{Element, Followed, ForceLaw, MemberMotion, Port};
+pub use law::{Element, Followed, ForceLaw, MemberMotion, Port, Tangent};
 pub use march::{Excitation, Snapshot};
 pub use propagator::ExactPropagator;

@@ -5,6 +5,7 @@ use simgap_model::Node;
 use super::kernel::Kernel;
 use super::law::{Element, MemberMotion};
 use super::propagator::ExactPropagator;
+use super::together::Together;
 
 /// Sweeps over several elements before the step is taken as it stands. Contraction per sweep is
 /// the coupling through the masses within one step, far below one.
@@ -20,13 +21,13 @@ pub(super) const AT_REST: f64 = 1e-9;
 /// How the forces of element j move element i within one step, E and Γ folded.
 pub(super) struct Compliance {
     /// C: displacement of i per S of j.
-    displacement: Vec<f64>,
+    pub(super) displacement: Vec<f64>,
     /// C: velocity of i per S of j.
-    velocity: Vec<f64>,
+    pub(super) velocity: Vec<f64>,
     /// G: displacement of i per D of j.
-    dry_displacement: Vec<f64>,
+    pub(super) dry_displacement: Vec<f64>,
     /// G: velocity of i per D of j.
-    dry_velocity: Vec<f64>,
+    pub(super) dry_velocity: Vec<f64>,
 }
 
 impl Compliance {
@@ -47,7 +48,7 @@ pub(super) struct Plant<'a> {
     pub(super) elements: &'a [Element],
     pub(super) compliance: Compliance,
     pub(super) dry: Vec<bool>,
-    any_dry: bool,
+    pub(super) any_dry: bool,
     /// S of each element at the end of the last step.
     pub(super) smooth: Vec<f64>,
     /// D of each element over the last step.
@@ -61,8 +62,11 @@ pub(super) struct Plant<'a> {
     /// Velocity across each element at the two ends of the step.
     start_velocity: Vec<f64>,
     pub(super) end_velocity: Vec<f64>,
-    free_displacement: Vec<f64>,
-    free_velocity: Vec<f64>,
+    pub(super) free_displacement: Vec<f64>,
+    pub(super) free_velocity: Vec<f64>,
+    /// Which elements are solved together.
+    pub(super) has_tangent: Vec<bool>,
+    pub(super) together: Together,
 }
 
 /// What stands at one node less what stands at the other.
@@ -116,7 +120,10 @@ impl<'a> Plant<'a> {
             }
             folded
         };
+        let has_tangent: Vec<bool> = elements.iter().map(|e| e.law.has_tangent()).collect();
         Plant {
+            together: Together::new((0..m).filter(|i| has_tangent[*i]).collect()),
+            has_tangent,
             compliance: Compliance {
                 displacement: fold(&propagator.gamma1, 0),
                 velocity: fold(&propagator.gamma1, n),
@@ -190,6 +197,7 @@ impl<'a> Plant<'a> {
                 level * motion.velocity.signum()
             };
         }
+        self.together.begin(&self.smooth);
     }
 
     /// Solves (3) and (4) for the forces at the end of the step.
@@ -209,11 +217,16 @@ impl<'a> Plant<'a> {
                 *velocity = 0.0;
             }
         }
-        let sweeps = if m == 1 && !self.dry[0] { 1 } else { SWEEPS };
-        for _ in 0..sweeps {
+        self.extrapolate();
+        for _ in 0..self.sweeps() {
             let mut settled = true;
+            if !self.together.members.is_empty() {
+                settled &= self.solve_together(time_s);
+            }
             for i in 0..m {
-                settled &= self.solve_element(i, time_s);
+                if !self.has_tangent[i] {
+                    settled &= self.solve_element(i, time_s);
+                }
             }
             if settled {
                 break;

@@ -14,10 +14,12 @@
 //! each other.
 
 mod cylinder;
+mod flow;
 mod value;
 mod valve;
 
 pub use cylinder::Cylinder;
+pub use flow::Edges;
 pub use value::DriveValue;
 pub use valve::Valve;
 

@@ -4,11 +4,9 @@ mod in_model;
 
 use serde::{Deserialize, Serialize};
 
+use super::flow::{Edges, root};
 use crate::ModelError;
 use crate::refuse::{finite_positive, item, node_name};
-
-/// Pressure drop below which an orifice is laminar, Pa: the square root has no slope at zero, a real orifice has one.
-const LAMINAR_PA: f64 = 5e4;
 
 /// A four-way valve between supply, tank and the chambers of a cylinder, its spool a second-order system.
 ///
@@ -68,11 +66,6 @@ pub struct Valve {
     pub supply_droop: f64,
 }
 
-/// √Δ of either sign, with a finite slope at zero.
-fn root(drop: f64) -> f64 {
-    drop / (drop * drop + LAMINAR_PA * LAMINAR_PA).sqrt().sqrt()
-}
-
 impl Valve {
     /// Name of the node of the spool.
     #[must_use]
@@ -86,35 +79,32 @@ impl Valve {
         self.rated_flow / self.rated_drop.sqrt()
     }
 
-    /// Flow into a chamber (0 or 1), m³/s, at a spool position and the pressure of the chamber, Pa: (2) to (4).
-    #[inline]
+    /// The edges at a chamber (0 or 1).
     #[must_use]
-    pub fn flow(&self, chamber: usize, spool: f64, pressure: f64) -> f64 {
-        let open = spool.signum() * (spool.abs() - self.overlap).clamp(0.0, 1.0);
-        let width = self.flow_gain() * open.abs() * (1.0 + spool.signum() * self.asymmetry);
-        if (spool > 0.0) == (chamber == 0) {
-            self.drawn(width, root(self.supply - pressure))
-        } else {
-            -width * root(pressure - self.tank)
+    pub fn edges(&self, chamber: usize) -> Edges {
+        Edges {
+            flow_gain: self.flow_gain(),
+            overlap: self.overlap,
+            asymmetry: self.asymmetry,
+            supply: self.supply,
+            tank: self.tank,
+            supply_droop: self.supply_droop,
+            fills: if chamber == 0 { 1.0 } else { -1.0 },
         }
     }
 
-    /// Flow from a supply whose pressure falls by R Q: Q² = w² (Δ − R Q).
-    fn drawn(&self, width: f64, root: f64) -> f64 {
-        let flow = width * root;
-        let droop = width * width * self.supply_droop;
-        if droop == 0.0 || flow <= 0.0 {
-            return flow;
-        }
-        2.0 * flow * flow / (droop + (droop * droop + 4.0 * flow * flow).sqrt())
+    /// Flow into a chamber (0 or 1), m³/s, at a spool position and the pressure of the chamber, Pa: (2) to (4).
+    #[must_use]
+    pub fn flow(&self, chamber: usize, spool: f64, pressure: f64) -> f64 {
+        self.edges(chamber).flow(spool, pressure)[0]
     }
 
     /// Flow into a chamber for each unit of the spool about a valve that opens either way, m³/s, at a pressure: the mean
     /// of the two directions, overlap and droop left out.
     #[must_use]
     pub fn opening_gain(&self, chamber: usize, pressure: f64) -> f64 {
-        let filling = root(self.supply - pressure);
-        let emptying = root(pressure - self.tank);
+        let [filling, _] = root(self.supply - pressure);
+        let [emptying, _] = root(pressure - self.tank);
         let (forward, back, sign) = if chamber == 0 {
             (filling, emptying, 1.0)
         } else {

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from . import _simgap
 
-_Value = str | float | Sequence[str]
+_Value = str | float | Sequence[str] | Sequence[float]
 
 
 class Model:
@@ -25,6 +25,10 @@ class Model:
             .input("drive", at="carriage")                                 # a force
             .output("q", at="carriage")                                    # a displacement
         )
+
+    Rigid bodies with points, beams, hydraulic cylinders, servo valves and linear blocks (controllers,
+    filters, sensors) are parts as well: :meth:`body`, :meth:`point`, :meth:`beam`, :meth:`cylinder`,
+    :meth:`valve`, :meth:`block`.
 
     A model never changes: each part gives a new model. The node ``"ground"`` never moves.
     Rotation uses the same parts: inertia for mass, angle for displacement, torque for force.
@@ -106,9 +110,10 @@ class Model:
         gain: float | None = None,
         uncertainty: float | None = None,
     ) -> Model:
-        """Adds what drives the machine, as measured: a ``"force"`` on the mass ``at``, N, or
-        the ``"displacement"`` of the moving base node ``at``, m. ``gain`` is in model units per
-        unit of the channel; without it the unit must fit.
+        """Adds what drives the machine, as measured: a ``"force"`` on the mass ``at``, N, the
+        ``"displacement"`` of the moving base node ``at``, m, the ``"command"`` of the valve ``at``,
+        1, or the ``"set_point"`` of the block ``at``. ``gain`` is in model units per unit of the
+        channel; without it the unit must fit.
         """
         values = {"channel": channel, "kind": kind, "at": at, "gain": gain}
         return self._with("input", {**values, "uncertainty": uncertainty})
@@ -124,12 +129,118 @@ class Model:
         uncertainty: float | None = None,
     ) -> Model:
         """Adds what is measured and compared: ``"displacement"``, ``"velocity"`` or
-        ``"acceleration"`` of the node ``at``, or the ``"force"`` that the members carry between
-        the nodes ``between``. ``gain`` as in :meth:`input`.
+        ``"acceleration"`` of the node ``at``, the ``"force"`` that the members carry between the
+        nodes ``between``, the ``"roll"`` of a body, rad, the ``"pressure"``, Pa, or ``"flow"``,
+        m³/s, of a chamber such as ``"left.p1"``, or the ``"spool"`` of a valve, 1. ``gain`` as in
+        :meth:`input`.
         """
         pair = None if between is None else list(between)
         values = {"channel": channel, "kind": kind, "at": at, "between": pair, "gain": gain}
         return self._with("output", {**values, "uncertainty": uncertainty})
+
+    def body(self, name: str, mass: float, inertia: float) -> Model:
+        """Adds a rigid body with heave and roll: its mass, kg, and its inertia about the centre of
+        mass, kg m²."""
+        return self._with("body", {"name": name, "mass": mass, "inertia": inertia})
+
+    def point(self, name: str, body: str, offset: float) -> Model:
+        """Adds a point of a body, ``offset`` from its centre of mass, m, of either sign: the node
+        ``"body.name"``."""
+        return self._with("point", {"name": name, "body": body, "offset": offset})
+
+    def beam(
+        self,
+        name: str,
+        between: Sequence[str],
+        *,
+        length: float,
+        width: float,
+        thickness: float,
+        youngs_modulus: float,
+        density: float,
+        elements: int | None = None,
+        modes: int | None = None,
+        damping_ratio: float | None = None,
+        uncertainty: float | None = None,
+    ) -> Model:
+        """Adds an Euler-Bernoulli beam clamped at both ends, in SI units. ``uncertainty`` is that
+        of Young's modulus."""
+        size = {"length": length, "width": width, "thickness": thickness}
+        material = {"youngs_modulus": youngs_modulus, "density": density}
+        kept = {"elements": elements, "modes": modes, "damping_ratio": damping_ratio}
+        values = {"name": name, "between": list(between), **size, **material, **kept}
+        return self._with("beam", {**values, "uncertainty": uncertainty})
+
+    def cylinder(
+        self,
+        name: str,
+        between: Sequence[str],
+        *,
+        areas: Sequence[float],
+        dead_volumes: Sequence[float],
+        stroke: float,
+        bulk_modulus: float,
+        position: float | None = None,
+        leakage: float | None = None,
+        external_leakage: float | None = None,
+        pressures: Sequence[float] | None = None,
+    ) -> Model:
+        """Adds a double-acting hydraulic cylinder between rod and housing, in SI units; its
+        pressures are the nodes ``"name.p1"`` and ``"name.p2"``. ``pressures`` are those at the
+        start, ``position`` is where in the stroke it moves (its middle where not stated)."""
+        oil = {"bulk_modulus": bulk_modulus, "leakage": leakage}
+        values = {"name": name, "between": list(between), "areas": list(areas)}
+        size = {"dead_volumes": list(dead_volumes), "stroke": stroke, "position": position}
+        more = {
+            "external_leakage": external_leakage,
+            "pressures": None if pressures is None else list(pressures),
+        }
+        return self._with("cylinder", {**values, **size, **oil, **more})
+
+    def valve(
+        self,
+        name: str,
+        cylinder: str,
+        *,
+        rated_flow: float,
+        rated_drop: float,
+        natural_freq: float,
+        damping_ratio: float,
+        supply: float,
+        from_block: str | None = None,
+        tank: float | None = None,
+        overlap: float | None = None,
+        asymmetry: float | None = None,
+        supply_droop: float | None = None,
+    ) -> Model:
+        """Adds a four-way servo valve that feeds a cylinder, in SI units (``natural_freq`` in Hz),
+        commanded by the block ``from_block`` or by an input of the kind ``"command"``."""
+        values = {"name": name, "cylinder": cylinder, "from": from_block}
+        flow = {"rated_flow": rated_flow, "rated_drop": rated_drop, "overlap": overlap}
+        spool = {"natural_freq": natural_freq, "damping_ratio": damping_ratio}
+        more = {"tank": tank, "asymmetry": asymmetry, "supply_droop": supply_droop}
+        return self._with("valve", {**values, **flow, **spool, "supply": supply, **more})
+
+    def block(
+        self,
+        name: str,
+        numerator: Sequence[float],
+        denominator: Sequence[float],
+        *,
+        plus: Sequence[str] | None = None,
+        minus: Sequence[str] | None = None,
+        force: str | None = None,
+    ) -> Model:
+        """Adds a transfer function, coefficients of s with the highest power first, of the sum of
+        the signals ``plus`` less those of ``minus``: blocks, nodes (their displacement, m) and
+        chambers (their pressure, Pa). Its output commands a valve, or is a force, N, on the node
+        ``force``."""
+        values = {"name": name, "numerator": list(numerator), "denominator": list(denominator)}
+        joined = {
+            "plus": None if plus is None else list(plus),
+            "minus": None if minus is None else list(minus),
+        }
+        return self._with("block", {**values, **joined, "force": force})
 
     def load(self, at: str, value: float, *, uncertainty: float | None = None) -> Model:
         """Adds a known constant force on a mass, N, such as its weight."""
@@ -205,5 +316,6 @@ def _toml(value: _Value) -> str:
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, Sequence):
-        return "[" + ", ".join(_text(item) for item in value) + "]"
-    return repr(float(value))
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    # Counts are whole numbers in the file.
+    return str(value) if isinstance(value, int) else repr(float(value))

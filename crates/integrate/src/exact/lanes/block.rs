@@ -8,26 +8,30 @@ use super::kernel::LaneKernel;
 use super::law::OneByOne;
 use super::row::{Row, State, change, entry};
 use super::set::LaneSet;
+use super::together::Together;
 use super::wide::{Which, Wide};
 use super::{LANES, Mask, Pack};
 use crate::exact::law::{ForceLaw, Port};
-use crate::exact::plant::{Plant, SWEEPS};
+use crate::exact::plant::Plant;
 
 /// Eight sets of one structure, in the lanes of every number.
 pub(super) struct Block<'a> {
-    arch: Arch,
+    pub(super) arch: Arch,
     pub(super) kernel: LaneKernel,
     pub(super) ports: Vec<Port>,
-    laws: Vec<Box<dyn LaneLaw + 'a>>,
+    pub(super) laws: Vec<Box<dyn LaneLaw + 'a>>,
     pub(super) elements: Vec<ElementLanes>,
     /// How the forces of element j move element i, row-major, as in the march of one set.
-    compliance: [Vec<Pack>; 4],
+    pub(super) compliance: [Vec<Pack>; 4],
+    /// Which elements are solved together.
+    pub(super) has_tangent: Vec<bool>,
+    pub(super) together: Together,
     sweeps: usize,
     any_dry: bool,
     any_memory: bool,
     /// Whether the force of an element is spread over steps in some set.
     pub(super) spread: Vec<bool>,
-    free: Vec<[Pack; 2]>,
+    pub(super) free: Vec<[Pack; 2]>,
     step_s: Pack,
     start_s: Pack,
 }
@@ -98,7 +102,12 @@ fn push_body<S: Simd>(simd: S, point: BodyPoint, force: Wide<S>, dof_force: &mut
 
 /// `value − (a b + c d)`.
 #[inline(always)]
-fn less_products<S: Simd>(simd: S, value: &Pack, first: [&Pack; 2], second: [&Pack; 2]) -> Pack {
+pub(super) fn less_products<S: Simd>(
+    simd: S,
+    value: &Pack,
+    first: [&Pack; 2],
+    second: [&Pack; 2],
+) -> Pack {
     let product = |[a, b]: [&Pack; 2]| Wide::of(simd, a) * Wide::of(simd, b);
     (Wide::of(simd, value) - (product(first) + product(second))).pack()
 }
@@ -136,8 +145,12 @@ impl<'a> Block<'a> {
                 of_plants(&|p| p.from[i].velocity),
                 of_plants(&|p| p.from[i].time_s),
             ],
+            tangent: [Pack::ZERO; 2],
             open: Mask::ALL,
         };
+        let members = &plants[0].together.members;
+        let before = (0..members.len()).map(|a| of_plants(&|p| p.together.before[a]));
+        let together = Together::new(members, before.collect());
         let law = |i: usize| -> Box<dyn LaneLaw + 'a> {
             let peers: [&'a dyn ForceLaw; LANES] = sets.map(|set| set.elements[i].law.as_ref());
             peers[0]
@@ -146,16 +159,14 @@ impl<'a> Block<'a> {
         };
         Block {
             arch,
-            kernel: LaneKernel::new(&sets.map(|set| set.propagator)),
+            kernel: LaneKernel::new(arch, sets),
             ports: sets[0].elements.iter().map(|e| e.port).collect(),
             laws: (0..m).map(law).collect(),
             elements: (0..m).map(element).collect(),
             compliance,
-            sweeps: if m == 1 && !plants[0].dry[0] {
-                1
-            } else {
-                SWEEPS
-            },
+            has_tangent: plants[0].has_tangent.clone(),
+            together,
+            sweeps: plants[0].sweeps(),
             any_dry: plants[0].dry.contains(&true),
             spread: (0..m)
                 .map(|i| {
@@ -206,10 +217,17 @@ impl<'a> Block<'a> {
             element.free_velocity = free[1];
             element.start_velocity = element.end_velocity;
         }
+        self.extrapolate(simd);
         let mut open = Mask::ALL;
         for _ in 0..self.sweeps {
             let mut moved = Which::of(simd, &Mask::NONE);
+            if !self.together.members.is_empty() {
+                moved = moved | Which::of(simd, &self.solve_together(&open));
+            }
             for i in 0..self.elements.len() {
+                if self.has_tangent[i] {
+                    continue;
+                }
                 self.prepare(simd, i);
                 let element = &mut self.elements[i];
                 element.open = open;

@@ -10,6 +10,9 @@ pub trait LaneLaw: Send + Sync {
     /// Solves one element for the end of a step, the others held.
     fn solve(&self, arch: Arch, element: &mut ElementLanes);
 
+    /// Force and slope at the motion of the element, for laws that are solved together.
+    fn tangent(&self, arch: Arch, element: &mut ElementLanes);
+
     /// Commits the memory at the end of a step.
     fn remember(&self, arch: Arch, element: &mut ElementLanes);
 }
@@ -40,6 +43,8 @@ pub struct ElementLanes {
     pub(super) memory: Pack,
     /// Displacement, velocity and time at the start of the step, for a law that remembers.
     pub(super) from: [Pack; 3],
+    /// Force and its slope over the velocity, for a law that is solved with others.
+    pub(super) tangent: [Pack; 2],
     /// Sets that still iterate; afterwards those whose forces changed.
     pub(super) open: Mask,
 }

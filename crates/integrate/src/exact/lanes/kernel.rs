@@ -1,14 +1,18 @@
 //! The linear part of one step for eight sets.
 
-use pulp::Simd;
+use pulp::{Arch, Simd};
 
-use super::row::{Row, State};
+use super::set::LaneSet;
+use super::compact::Compact;
+use super::row::{COMPARED, Row, State};
 use super::wide::Wide;
 use super::{LANES, Pack};
 use crate::exact::propagator::ExactPropagator;
 
 /// The matrices of eight propagators, row-major.
 pub(super) struct LaneKernel {
+    /// Where rows are too long for registers.
+    compact: Option<Compact>,
     phi: Vec<Pack>,
     gamma0: Vec<Pack>,
     gamma1: Vec<Pack>,
@@ -28,7 +32,9 @@ fn add_products<S: Simd>(simd: S, mut sum: Wide<S>, matrix: &[Pack], column: &[P
 }
 
 impl LaneKernel {
-    pub(super) fn new(propagators: &[&ExactPropagator; LANES]) -> LaneKernel {
+    pub(super) fn new(arch: Arch, sets: &[&LaneSet<'_>; LANES]) -> LaneKernel {
+        let propagators = sets.map(|set| set.propagator);
+        let is_long = propagators[0].dof_count > COMPARED;
         let pack = |matrix: &dyn Fn(&ExactPropagator) -> Vec<f64>| -> Vec<Pack> {
             let lanes = propagators.map(matrix);
             (0..lanes[0].len())
@@ -36,6 +42,7 @@ impl LaneKernel {
                 .collect()
         };
         LaneKernel {
+            compact: is_long.then(|| Compact::new(arch, sets)),
             phi: pack(&|p| p.phi.clone()),
             gamma0: pack(&|p| p.gamma0.clone()),
             gamma1: pack(&|p| p.gamma1.clone()),
@@ -49,12 +56,16 @@ impl LaneKernel {
     /// The step `z₁ = Φ z₀ + Γ₀ f₀ + Γ₁ f₁`, in the order of the march of one set.
     #[inline(always)]
     pub(super) fn step<S: Simd, R: Row>(
-        &self,
+        &mut self,
         simd: S,
         state: &State<R>,
         [before, after]: [&[Pack]; 2],
         next: &mut State<R>,
     ) {
+        if let Some(compact) = &mut self.compact {
+            compact.step(state, [before, after], next);
+            return;
+        }
         let (x, v) = (state.displacement.packs(), state.velocity.packs());
         let n = x.len();
         let (gamma0, gamma1) = (&self.gamma0[..2 * n * n], &self.gamma1[..2 * n * n]);
@@ -75,7 +86,11 @@ impl LaneKernel {
 
     /// Adds Γ₁ f to `next`.
     #[inline(always)]
-    pub(super) fn push_end<S: Simd, R: Row>(&self, simd: S, force: &R, next: &mut State<R>) {
+    pub(super) fn push_end<S: Simd, R: Row>(&mut self, simd: S, force: &R, next: &mut State<R>) {
+        if let Some(compact) = &mut self.compact {
+            compact.push_end(force.packs(), next);
+            return;
+        }
         push(simd, &self.gamma1, force, next);
     }
 

@@ -7,7 +7,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::element::{ElementLanes, LaneLaw};
 use super::solve::{self, LawLanes};
 use super::{LANES, Pack};
-use crate::exact::law::{Followed, ForceLaw, MemberMotion};
+use crate::exact::law::{Followed, ForceLaw, MemberMotion, Tangent};
 
 /// The parameters of eight laws of one type, and how they become a law again.
 struct Gathered<F, const K: usize> {
@@ -46,6 +46,11 @@ impl<L: ForceLaw, F: Fn([f64; K]) -> L, const K: usize> LawLanes for Gathered<F,
     }
 
     #[inline(always)]
+    fn tangent(&self, lane: usize, motion: MemberMotion) -> Tangent {
+        self.law(lane).tangent(motion)
+    }
+
+    #[inline(always)]
     fn follow(
         &self,
         lane: usize,
@@ -72,6 +77,10 @@ where
         arch.dispatch(Solve(self, element));
     }
 
+    fn tangent(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Tangents(self, element));
+    }
+
     fn remember(&self, arch: Arch, element: &mut ElementLanes) {
         arch.dispatch(Remember(self, element));
     }
@@ -86,6 +95,18 @@ impl<L: LawLanes> WithSimd for Solve<'_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         solve::solve(simd, self.0, self.1);
+    }
+}
+
+/// [`solve::tangent`] likewise.
+struct Tangents<'a, L>(&'a L, &'a mut ElementLanes);
+
+impl<L: LawLanes> WithSimd for Tangents<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        solve::tangent(self.0, self.1);
     }
 }
 
@@ -111,6 +132,11 @@ impl LawLanes for OneByOne<'_> {
     }
 
     #[inline(always)]
+    fn tangent(&self, lane: usize, motion: MemberMotion) -> Tangent {
+        self.0[lane].tangent(motion)
+    }
+
+    #[inline(always)]
     fn follow(
         &self,
         lane: usize,
@@ -132,6 +158,10 @@ impl LawLanes for OneByOne<'_> {
 impl LaneLaw for OneByOne<'_> {
     fn solve(&self, arch: Arch, element: &mut ElementLanes) {
         arch.dispatch(Solve(self, element));
+    }
+
+    fn tangent(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Tangents(self, element));
     }
 
     fn remember(&self, arch: Arch, element: &mut ElementLanes) {

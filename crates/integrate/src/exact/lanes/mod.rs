@@ -11,6 +11,7 @@
 
 mod batch;
 mod block;
+mod compact;
 mod element;
 mod kernel;
 mod law;
@@ -18,6 +19,7 @@ mod row;
 mod set;
 mod solve;
 mod source;
+mod together;
 mod wide;
 
 pub use batch::{Batch, LaneObserver, LaneSnapshot};

@@ -57,7 +57,7 @@ pub(super) fn copy<R: Row>(to: &mut R, from: &R) {
 }
 
 /// Longest row whose entries are found by comparing: the longest array that a batch is marched in.
-const COMPARED: usize = 4;
+pub(super) const COMPARED: usize = 4;
 
 /// An entry found by comparing: an index that only the run knows would keep a short row in memory.
 #[inline(always)]

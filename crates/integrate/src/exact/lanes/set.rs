@@ -29,6 +29,7 @@ impl<'a> LaneSet<'a> {
             a.port == b.port
                 && a.law.dry_level(0.0).is_some() == b.law.dry_level(0.0).is_some()
                 && a.law.remembers() == b.law.remembers()
+                && a.law.has_tangent() == b.law.has_tangent()
         };
         self.propagator.dof_count == other.propagator.dof_count
             && self.elements.len() == other.elements.len()

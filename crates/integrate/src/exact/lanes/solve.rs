@@ -9,12 +9,14 @@ use pulp::Simd;
 use super::element::ElementLanes;
 use super::wide::{Which, Wide};
 use super::{LANES, Pack};
-use crate::exact::law::{Followed, MemberMotion};
+use crate::exact::law::{Followed, MemberMotion, Tangent};
 use crate::exact::plant::{AT_REST, FORCE_TOLERANCE, SECANT_STEPS, dry_force};
 
 /// What the laws of the eight sets say.
 pub(super) trait LawLanes {
     fn force(&self, lane: usize, motion: MemberMotion) -> f64;
+
+    fn tangent(&self, lane: usize, motion: MemberMotion) -> Tangent;
 
     /// One step along a move.
     fn follow(
@@ -203,6 +205,18 @@ fn smooth_force<S: Simd>(
         open = open & !(flat | near | close);
     }
     s1
+}
+
+/// Force and slope of eight laws.
+#[inline(always)]
+pub(super) fn tangent(laws: &impl LawLanes, element: &mut ElementLanes) {
+    let at = [element.displacement, element.velocity, element.time_s];
+    let [mut force, mut damping] = [Pack::ZERO; 2];
+    for l in 0..LANES {
+        let tangent = laws.tangent(l, motion_at(&at, &element.step_s, l));
+        (force.0[l], damping.0[l]) = (tangent.force, tangent.damping);
+    }
+    element.tangent = [force, damping];
 }
 
 /// Commits the memory; the displacement is the one that the forces of all elements leave.

@@ -1,0 +1,245 @@
+//! The linear part of one step for eight sets of many degrees of freedom.
+//!
+//! Columns of zeros are left out (the integral of a pressure moves nothing; most coordinates are never pushed), four rows are
+//! summed side by side, since additions wait for each other within a row, and what all sets share is stored once. What is
+//! added to a row, and in which order, is as without.
+
+use pulp::{Arch, Simd, WithSimd};
+use simgap_model::Node;
+
+use super::set::LaneSet;
+use super::row::{Row, State};
+use super::wide::Wide;
+use super::{LANES, Pack};
+use crate::exact::propagator::ExactPropagator;
+
+/// Rows that are summed side by side.
+const ROWS: usize = 4;
+
+/// Entries of a matrix, those of four rows in a column beside each other.
+enum Rows {
+    /// The same in all sets.
+    Shared(Vec<[f64; ROWS]>),
+    Own(Vec<[Pack; ROWS]>),
+}
+
+trait Entry {
+    fn wide<S: Simd>(&self, simd: S) -> Wide<S>;
+}
+
+impl Entry for f64 {
+    #[inline(always)]
+    fn wide<S: Simd>(&self, simd: S) -> Wide<S> {
+        Wide::splat(simd, *self)
+    }
+}
+
+impl Entry for Pack {
+    #[inline(always)]
+    fn wide<S: Simd>(&self, simd: S) -> Wide<S> {
+        Wide::of(simd, self)
+    }
+}
+
+impl Rows {
+    /// A matrix of so many rows and columns from its entries in a set.
+    fn new(
+        propagators: &[&ExactPropagator; LANES],
+        [rows, columns]: [usize; 2],
+        entry: impl Fn(&ExactPropagator, usize, usize) -> f64,
+    ) -> Rows {
+        let places = (0..rows.div_ceil(ROWS)).flat_map(|block| {
+            let at = move |column| (block * ROWS, column);
+            (0..columns).map(at)
+        });
+        let value = |p: &ExactPropagator, row: usize, column: usize| {
+            if row < rows {
+                entry(p, row, column)
+            } else {
+                0.0
+            }
+        };
+        let first = propagators[0];
+        if propagators.iter().all(|p| std::ptr::eq(*p, first)) {
+            let four = |(row, column)| std::array::from_fn(|r| value(first, row + r, column));
+            return Rows::Shared(places.map(four).collect());
+        }
+        let four = |(row, column)| {
+            std::array::from_fn(|r| Pack::of(|l| value(propagators[l], row + r, column)))
+        };
+        Rows::Own(places.map(four).collect())
+    }
+
+    /// Adds the product with a column to `sums`, which has room for whole blocks of rows.
+    fn add_product(&self, arch: Arch, column: &[Pack], sums: &mut [Pack]) {
+        if !column.is_empty() {
+            arch.dispatch(Product(self, column, sums));
+        }
+    }
+}
+
+/// A whole product at a time: not to be compiled again with every march and every observer.
+struct Product<'a>(&'a Rows, &'a [Pack], &'a mut [Pack]);
+
+impl WithSimd for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Product(rows, column, sums) = self;
+        match rows {
+            Rows::Shared(entries) => add_product(simd, entries, column, sums),
+            Rows::Own(entries) => add_product(simd, entries, column, sums),
+        }
+    }
+}
+
+#[inline(always)]
+fn add_product<S: Simd, E: Entry>(
+    simd: S,
+    entries: &[[E; ROWS]],
+    column: &[Pack],
+    sums: &mut [Pack],
+) {
+    let blocks = entries.chunks_exact(column.len());
+    for (block, sums) in blocks.zip(sums.chunks_exact_mut(ROWS)) {
+        // Closures would not be inlined into vector instructions.
+        let mut of_rows = [Wide::zero(simd); ROWS];
+        for r in 0..ROWS {
+            of_rows[r] = Wide::of(simd, &sums[r]);
+        }
+        for (entries, value) in block.iter().zip(column) {
+            let value = Wide::of(simd, value);
+            for r in 0..ROWS {
+                of_rows[r] += entries[r].wide(simd) * value;
+            }
+        }
+        for r in 0..ROWS {
+            sums[r] = of_rows[r].pack();
+        }
+    }
+}
+
+/// Φ, Γ₀ and Γ₁ without their columns of zeros, and room for their products.
+pub(super) struct Compact {
+    arch: Arch,
+    /// [Γ₀ Γ₁ Φ] over the coordinates that are pushed and the parts of the state that move something.
+    step: Rows,
+    pushed: Vec<usize>,
+    moving: Vec<usize>,
+    /// Γ₁ over the coordinates that elements push.
+    end: Rows,
+    joined: Vec<usize>,
+    column: Vec<Pack>,
+    sums: Vec<Pack>,
+}
+
+impl Compact {
+    pub(super) fn new(arch: Arch, sets: &[&LaneSet<'_>; LANES]) -> Compact {
+        let propagators = sets.map(|set| set.propagator);
+        let n = propagators[0].dof_count;
+        let joined: Vec<bool> = joined(sets, n);
+        let is_pushed: Vec<bool> = pushed(sets, &joined);
+        let list = |is: &[bool]| -> Vec<usize> { (0..n).filter(|i| is[*i]).collect() };
+        let (pushed, joined) = (list(&is_pushed), list(&joined));
+        let moves = |p: &ExactPropagator, j: usize| (0..2 * n).any(|i| p.phi[i * 2 * n + j] != 0.0);
+        let moving = (0..2 * n).filter(|j| propagators.iter().any(|p| moves(p, *j)));
+        let moving: Vec<usize> = moving.collect();
+        let k = pushed.len();
+        let columns = 2 * k + moving.len();
+        let step = Rows::new(&propagators, [2 * n, columns], |p, i, j| {
+            if j < k {
+                p.gamma0[i * n + pushed[j]]
+            } else if j < 2 * k {
+                p.gamma1[i * n + pushed[j - k]]
+            } else {
+                p.phi[i * 2 * n + moving[j - 2 * k]]
+            }
+        });
+        let end = Rows::new(&propagators, [2 * n, joined.len()], |p, i, j| {
+            p.gamma1[i * n + joined[j]]
+        });
+        Compact {
+            arch,
+            step,
+            pushed,
+            moving,
+            end,
+            joined,
+            column: Vec::with_capacity(columns),
+            sums: vec![Pack::ZERO; (2 * n).next_multiple_of(ROWS)],
+        }
+    }
+
+    /// The step `z₁ = Φ z₀ + Γ₀ f₀ + Γ₁ f₁`.
+    pub(super) fn step<R: Row>(
+        &mut self,
+        state: &State<R>,
+        forces: [&[Pack]; 2],
+        next: &mut State<R>,
+    ) {
+        let (x, v) = (state.displacement.packs(), state.velocity.packs());
+        let n = x.len();
+        self.column.clear();
+        for force in forces {
+            self.column.extend(self.pushed.iter().map(|i| force[*i]));
+        }
+        let at = |&i: &usize| if i < n { x[i] } else { v[i - n] };
+        self.column.extend(self.moving.iter().map(at));
+        self.sums.fill(Pack::ZERO);
+        self.step
+            .add_product(self.arch, &self.column, &mut self.sums);
+        self.deliver(next);
+    }
+
+    /// Adds Γ₁ f to `next`, f being zero where no element pushes.
+    pub(super) fn push_end<R: Row>(&mut self, force: &[Pack], next: &mut State<R>) {
+        let (x, v) = (next.displacement.packs(), next.velocity.packs());
+        let n = x.len();
+        self.column.clear();
+        self.column.extend(self.joined.iter().map(|i| force[*i]));
+        self.sums[..n].copy_from_slice(x);
+        self.sums[n..2 * n].copy_from_slice(v);
+        self.end
+            .add_product(self.arch, &self.column, &mut self.sums);
+        self.deliver(next);
+    }
+
+    fn deliver<R: Row>(&self, next: &mut State<R>) {
+        let n = next.velocity.packs().len();
+        let (x, v) = self.sums[..2 * n].split_at(n);
+        next.displacement.packs_mut().copy_from_slice(x);
+        next.velocity.packs_mut().copy_from_slice(v);
+    }
+}
+
+/// Whether elements push each coordinate.
+fn joined(sets: &[&LaneSet<'_>; LANES], n: usize) -> Vec<bool> {
+    let mut joined = vec![false; n];
+    let nodes = sets[0].elements.iter().flat_map(|e| e.port.force);
+    for (i, _) in nodes.flat_map(Node::terms) {
+        joined[i] = true;
+    }
+    joined
+}
+
+/// Whether anything pushes each coordinate at any sample.
+fn pushed(sets: &[&LaneSet<'_>; LANES], joined: &[bool]) -> Vec<bool> {
+    let mut pushed = joined.to_vec();
+    for (l, set) in sets.iter().enumerate() {
+        let force = set.excitation.dof_force;
+        let known = sets[..l].iter();
+        if known
+            .into_iter()
+            .any(|other| std::ptr::eq(other.excitation.dof_force, force))
+        {
+            continue;
+        }
+        for row in force.chunks_exact(pushed.len()) {
+            for (pushed, force) in pushed.iter_mut().zip(row) {
+                *pushed |= *force != 0.0;
+            }
+        }
+    }
+    pushed
+}

@@ -1,0 +1,169 @@
+//! Elements whose laws offer a tangent, solved together by Newton's method.
+//!
+//! The orifices of a valve push the pressures that they read within the same step, and each other's through the rod:
+//! (3) of [`super::march`] for all of them, with the forces of other elements held,
+//!
+//! ```text
+//! r = φ(d, v) − S,    A = 1 + φ_v Cᵥ,    A Δ = r,    S ← S + Δ                                        (5)
+//! ```
+//!
+//! from a straight line through the last two steps. It ends where Δ is within the square root of the accuracy: what Newton's
+//! method leaves then is its square. A has a diagonal of at least one where a force resists the velocity and needs no
+//! pivots.
+
+use super::law::{MemberMotion, Tangent};
+use super::plant::{FORCE_TOLERANCE, Plant, SECANT_STEPS, SWEEPS};
+
+/// Relative change of the forces in a Newton step after which there is none: the square root of [`FORCE_TOLERANCE`].
+pub(super) const LAST_STEP: f64 = 1e-4;
+
+/// The elements that are solved together, and room for it.
+#[derive(Default)]
+pub(super) struct Together {
+    /// Places among all elements.
+    pub(super) members: Vec<usize>,
+    /// S of each at the start of the step.
+    pub(super) before: Vec<f64>,
+    without: Vec<[f64; 2]>,
+    old: Vec<f64>,
+    matrix: Vec<f64>,
+    residual: Vec<f64>,
+}
+
+impl Together {
+    pub(super) fn new(members: Vec<usize>) -> Together {
+        let g = members.len();
+        Together {
+            members,
+            before: vec![0.0; g],
+            without: vec![[0.0; 2]; g],
+            old: vec![0.0; g],
+            matrix: vec![0.0; g * g],
+            residual: vec![0.0; g],
+        }
+    }
+
+    /// At the first sample.
+    pub(super) fn begin(&mut self, smooth: &[f64]) {
+        for (&i, before) in self.members.iter().zip(&mut self.before) {
+            *before = smooth[i];
+        }
+    }
+}
+
+impl Plant<'_> {
+    /// Sweeps over the elements at the most: none is solved again where nothing else moves it.
+    pub(super) fn sweeps(&self) -> usize {
+        let count = self.elements.len();
+        if self.together.members.len() == count || (count == 1 && !self.any_dry) {
+            1
+        } else {
+            SWEEPS
+        }
+    }
+
+    /// Takes the forces of the members to where the last two steps lead.
+    pub(super) fn extrapolate(&mut self) {
+        for (&i, before) in self.together.members.iter().zip(&mut self.together.before) {
+            let now = self.smooth[i];
+            self.smooth[i] = now + (now - *before);
+            *before = now;
+        }
+    }
+
+    /// (5); true if no force changed.
+    pub(super) fn solve_together(&mut self, time_s: f64) -> bool {
+        let (m, c) = (self.elements.len(), &self.compliance);
+        let Together {
+            members,
+            without,
+            old,
+            matrix,
+            residual,
+            ..
+        } = &mut self.together;
+        let g = members.len();
+        for (a, &i) in members.iter().enumerate() {
+            let (mut d, mut v) = (self.free_displacement[i], self.free_velocity[i]);
+            for j in (0..m).filter(|j| !self.has_tangent[*j]) {
+                let k = i * m + j;
+                let (s, dry) = (self.smooth[j], self.dry_force[j]);
+                d -= c.displacement[k] * s + c.dry_displacement[k] * dry;
+                v -= c.velocity[k] * s + c.dry_velocity[k] * dry;
+            }
+            without[a] = [d, v];
+            old[a] = self.smooth[i];
+        }
+        for _ in 0..SECANT_STEPS {
+            for (a, &i) in members.iter().enumerate() {
+                let [mut displacement, mut velocity] = without[a];
+                for &j in &*members {
+                    displacement -= c.displacement[i * m + j] * self.smooth[j];
+                    velocity -= c.velocity[i * m + j] * self.smooth[j];
+                }
+                let Tangent { force, damping } = self.elements[i].law.tangent(MemberMotion {
+                    displacement,
+                    velocity,
+                    time_s,
+                    step_s: self.propagator.time_step_s,
+                });
+                residual[a] = force - self.smooth[i];
+                for (b, &j) in members.iter().enumerate() {
+                    let unit = if a == b { 1.0 } else { 0.0 };
+                    matrix[a * g + b] = unit + damping * c.velocity[i * m + j];
+                }
+            }
+            eliminate(matrix, residual);
+            let mut is_last = true;
+            for (&i, change) in members.iter().zip(&*residual) {
+                self.smooth[i] += change;
+                is_last &= change.abs() <= LAST_STEP * self.smooth[i].abs();
+            }
+            if is_last {
+                break;
+            }
+        }
+        let mut each = members.iter().zip(&*old);
+        each.all(|(&i, old)| (self.smooth[i] - old).abs() <= FORCE_TOLERANCE * self.smooth[i].abs())
+    }
+}
+
+/// Solves A x = r in place, without pivots; A is used up.
+fn eliminate(matrix: &mut [f64], right: &mut [f64]) {
+    let g = right.len();
+    for k in 0..g {
+        let pivot = 1.0 / matrix[k * g + k];
+        for i in k + 1..g {
+            let factor = matrix[i * g + k] * pivot;
+            for j in k + 1..g {
+                matrix[i * g + j] -= factor * matrix[k * g + j];
+            }
+            right[i] -= factor * right[k];
+        }
+        matrix[k * g + k] = pivot;
+    }
+    for k in (0..g).rev() {
+        for j in k + 1..g {
+            right[k] -= matrix[k * g + j] * right[j];
+        }
+        right[k] *= matrix[k * g + k];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::eliminate;
+
+    #[test]
+    fn verify_elimination_solves() {
+        let matrix = [2.0, 0.5, -0.1, 0.3, 1.5, 0.2, -0.4, 0.1, 1.0];
+        let wanted = [1.0, -2.0, 0.5];
+        let mut right: Vec<f64> = (0..3)
+            .map(|i| (0..3).map(|j| matrix[3 * i + j] * wanted[j]).sum())
+            .collect();
+        eliminate(&mut matrix.clone(), &mut right);
+        for (found, wanted) in right.iter().zip(wanted) {
+            assert!((found - wanted).abs() < 1e-15, "{found} {wanted}");
+        }
+    }
+}
