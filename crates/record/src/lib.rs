@@ -110,6 +110,7 @@ pub use csv_read::{
 };
 pub use error::{Place, RecordError};
 pub use faults::{FormatFault, MapFault, MendFault, SelectionFault, TextFault};
+pub use foreign::without_panic;
 pub use format::Format;
 pub use map::{ChannelMap, MapEntry};
 pub use note::Note;

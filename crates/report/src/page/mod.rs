@@ -7,6 +7,7 @@
 mod answer;
 mod computed;
 mod force;
+mod frame;
 mod guide;
 mod picture;
 mod pictures;
@@ -25,6 +26,7 @@ use simgap_model::{Location, Model};
 use crate::chart::ChartError;
 use crate::markup::Html;
 use crate::wording::headline;
+pub use frame::{page_of, table_of};
 pub use picture::PictureFile;
 use pictures::{Pictured, pictured};
 
