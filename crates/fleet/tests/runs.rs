@@ -33,23 +33,47 @@ fn table(out: &Path, units: &[Unit]) -> BTreeMap<String, Vec<u8>> {
     read.collect()
 }
 
+/// What the diagnoses of this file look for. The rest of the catalogue would take time and has tests of its own.
+const KINDS: [&str; 9] = [
+    "coulomb_friction",
+    "viscous_damping",
+    "constant_force",
+    "sensor_bias",
+    "sensor_gain",
+    "input_gain",
+    "stiffness_error",
+    "mass_error",
+    "damping_error",
+];
+
+fn short_catalogue(folder: &Path) {
+    let all = simgap_effects::catalogue()
+        .iter()
+        .map(|effect| effect.kind());
+    let others: Vec<&str> = all.filter(|kind| !KINDS.contains(kind)).collect();
+    let path = folder.join("plan.toml");
+    let plan = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, format!("{plan}withhold = {others:?}\n")).unwrap();
+}
+
 /// A small fleet with all that the large one has, ended in the middle and taken up again.
 #[test]
 fn verify_a_fleet_is_told_and_a_killed_run_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let fleet = Fleet {
-        machines: 6,
+        machines: 5,
         days: 8,
         growing: vec![1],
         friction_a_day: 0.35,
-        loosening: 4,
+        loosening: 3,
         loosening_a_day: 0.03,
         wrong_day: 3,
         samples: 240,
     };
     fleet.write(folder.path()).unwrap();
+    short_catalogue(folder.path());
     let (plan, units) = planned(folder.path());
-    assert_eq!(units.len(), 48);
+    assert_eq!(units.len(), 40);
     let out = folder.path().join("result");
     // Ended after ten diagnoses.
     let (cancel, done) = (Cancel::default(), AtomicUsize::new(0));
@@ -67,18 +91,18 @@ fn verify_a_fleet_is_told_and_a_killed_run_goes_on() {
     std::fs::write(&beside, "half").unwrap();
     let counts = ran(&units, &out, 2);
     assert!(counts.known >= 10 && counts.known < 14, "{counts:?}");
-    assert_eq!(counts.diagnosed + counts.known, 48);
+    assert_eq!(counts.diagnosed + counts.known, 40);
     assert!(!beside.exists());
     let whole = table(&out, &units);
     // Undisturbed, on one thread, elsewhere: some of them, one of each kind.
-    let some: Vec<Unit> = [0, 11, 15, 35, 39].map(|k| units[k].clone()).to_vec();
+    let some: Vec<Unit> = [0, 11, 15, 31, 35].map(|k| units[k].clone()).to_vec();
     let other = folder.path().join("other");
     ran(&some, &other, 1);
     for (file, bytes) in table(&other, &some) {
         assert!(whole[&file] == bytes, "{file}");
     }
     // Nothing is left to do, and nothing changes.
-    assert_eq!(ran(&units, &out, 2).known, 48);
+    assert_eq!(ran(&units, &out, 2).known, 40);
     assert!(table(&out, &units) == whole);
 
     let told = report(&plan, &units, &out).unwrap();
@@ -92,7 +116,7 @@ fn verify_a_fleet_is_told_and_a_killed_run_goes_on() {
         told.findings
     );
     assert!(
-        named(Scope::Machine, "machine", "m04"),
+        named(Scope::Machine, "machine", "m03"),
         "{:#?}",
         told.findings
     );
@@ -110,7 +134,7 @@ fn verify_a_fleet_is_told_and_a_killed_run_goes_on() {
         "{grows:?}"
     );
     assert!(
-        grows.iter().any(|(m, [from, to])| *m == "m04" && to < from),
+        grows.iter().any(|(m, [from, to])| *m == "m03" && to < from),
         "{grows:?}"
     );
     // No machine is blamed but these two.
@@ -118,7 +142,7 @@ fn verify_a_fleet_is_told_and_a_killed_run_goes_on() {
     assert!(
         blamed
             .flat_map(|f| &f.levels["machine"])
-            .all(|m| m == "m01" || m == "m04"),
+            .all(|m| m == "m01" || m == "m03"),
         "{:#?}",
         told.findings
     );
@@ -137,6 +161,7 @@ fn verify_what_fails_is_a_row_and_is_done_again_when_its_record_changes() {
         ..Fleet::whole()
     };
     fleet.write(folder.path()).unwrap();
+    short_catalogue(folder.path());
     let (plan, units) = planned(folder.path());
     let record = Path::new(&units[1].train[0]);
     let sound = std::fs::read(record).unwrap();

@@ -42,7 +42,7 @@ KINDS = ["coulomb_friction", "sensor_bias", "stiffness_error", "mass_error", "da
 def fleet_folder(folder):
     """Three machines on two days, one of them with a softer spring; one record is damaged."""
     (folder / "table.toml").write_text(MODEL)
-    withheld = [kind.kind for kind in simgap.effects() if kind.kind not in KINDS]
+    withheld = [kind for kind in simgap.effects() if kind not in KINDS]
     for machine in range(3):
         for day in range(2):
             record = MODEL.replace("800.0", "640.0") if machine == 1 else MODEL
@@ -142,7 +142,7 @@ def test_a_worker_that_dies_loses_nothing(fleet, by_command, tmp_path):
 
 def test_dask_gives_the_same(fleet, by_command, tmp_path):
     distributed = pytest.importorskip("distributed")
-    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0"}
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         simgap.fleet.run(fleet / "plan.toml", tmp_path, client=client, progress=False)
     assert contents(tmp_path) == by_command
