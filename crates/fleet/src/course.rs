@@ -17,7 +17,9 @@
 //! k numbers are estimated: 1 for a constant, 2 for a line, 2m − 1 for m segments. φ counts that diagnoses scatter by more than
 //! their standard errors say.
 //!
-//! Reference: `jackson2005`, `schwarz1978`.
+//! Reference: `jackson2005`.
+//!
+//! Reference: `schwarz1978`.
 
 use crate::observe::{Estimate, NORMAL_95};
 

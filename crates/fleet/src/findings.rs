@@ -321,8 +321,7 @@ fn shifted(quantity: &Quantity, series: &[Series]) -> Option<Finding> {
     let still = series.iter().filter(|one| one.course.is_none());
     let means: Vec<Estimate> = still.filter_map(|one| mean(&one.estimates)).collect();
     let found = population(&means)?;
-    // σ² = τ² + the variance of the mean.
-    let error = (found.next.powi(2) - found.between.powi(2)).max(0.0).sqrt();
+    let error = found.mean_std;
     let shift = (found.mean - 1.0).abs();
     (shift > LEAST_SHIFT && shift > SHIFTED * error).then(|| Finding {
         parameter: Some(quantity.parameter.clone()),

@@ -6,10 +6,11 @@
 //! Q = Σ (y_i − μ_0)² / s_i²,   μ_0 the mean with weights 1/s_i²                             (1)
 //! τ² = max(0, (Q − (n − 1)) / (Σ s_i⁻² − Σ s_i⁻⁴ / Σ s_i⁻²))                                (2)
 //! μ = Σ w_i y_i / Σ w_i,   w_i = 1/(s_i² + τ²)                                              (3)
-//! σ² = τ² + 1/Σ w_i                                                                         (4)
+//! σ² = max(τ² + 1/Σ w_i, (median s_i)²)                                                      (4)
 //! ```
 //!
-//! σ is how far the value of the next machine may be from μ.
+//! σ is how far the value of the next machine may be from μ. Scatter below the error of one machine cannot be seen, so that
+//! σ is not below it.
 //!
 //! Reference: `dersimonian1986`.
 
@@ -32,6 +33,8 @@ pub struct Population {
     pub machines: usize,
     /// μ.
     pub mean: f64,
+    /// Standard error of μ.
+    pub mean_std: f64,
     /// τ: scatter between machines.
     pub between: f64,
     /// σ: scatter of the next machine.
@@ -85,8 +88,11 @@ pub fn population(machines: &[Estimate]) -> Option<Population> {
     Some(Population {
         machines: machines.len(),
         mean: machines.iter().map(|e| e.value * weight(e)).sum::<f64>() / total,
+        mean_std: total.powf(-0.5),
         between: between.sqrt(),
-        next: (between + 1.0 / total).sqrt(),
+        next: (between + 1.0 / total)
+            .sqrt()
+            .max(median(machines.iter().map(|e| e.std).collect())),
     })
 }
 
@@ -142,7 +148,7 @@ mod tests {
         assert!(found.is_some_and(|p| (p.next - (2.25f64 + 2.5 / 5.0).sqrt()).abs() < 1e-12));
         // Machines that differ by no more than their errors are one.
         let alike = population(&of(&[1.0, 1.1, 0.9, 1.0], 0.5));
-        assert!(alike.is_some_and(|p| p.between == 0.0));
+        assert!(alike.is_some_and(|p| p.between == 0.0 && p.next == 0.5));
         assert_eq!(population(&machines[..2]), None);
     }
 

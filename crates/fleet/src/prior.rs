@@ -122,6 +122,7 @@ fn of_fleet<'a>(
         mean,
         between,
         next,
+        ..
     } = population(&means)?;
     if mean <= 0.0 {
         return None;
