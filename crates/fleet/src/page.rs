@@ -85,19 +85,17 @@ fn head(html: &mut Html, input: &PageInput<'_>) {
         &[],
         &format!("{} machines: {count} finding{plural}", machines.len()),
     );
+    // The figure of a tile is not broken: on a phone it has room for five digits.
     let tiles = [
-        ("Machines", machines.len().to_string()),
-        ("Dates", dates.len().to_string()),
-        (
-            "Diagnoses",
-            format!("{} of {}", all.len() - failed, input.units),
-        ),
+        ("Machines".to_owned(), machines.len()),
+        ("Dates".to_owned(), dates.len()),
+        (format!("Diagnoses, of {}", input.units), all.len() - failed),
     ];
     html.within("div", &[("class", "tiles")], |html| {
         for (name, figure) in tiles {
             html.within("div", &[("class", "tile")], |html| {
-                html.element("div", &[("class", "name")], name);
-                html.element("div", &[("class", "figure")], &figure);
+                html.element("div", &[("class", "name")], &name);
+                html.element("div", &[("class", "figure")], &figure.to_string());
             });
         }
     });
