@@ -26,6 +26,8 @@ pub(crate) enum Command {
     Modes(ModesArgs),
     /// What each parameter of a model file does to its poles, ranked.
     Sensitivity(SensitivityArgs),
+    /// Diagnose many machines by a plan: a table of answers, and what differs between machines and days.
+    Fleet(FleetArgs),
     /// Diagnose an embedded record of the mold oscillator and write the report.
     Demo(DemoArgs),
     /// Write a commented model file to start from, with the columns of a record.
@@ -99,6 +101,21 @@ pub(crate) struct SimulateArgs {
     /// Start at rest at zero displacement, even where measured outputs would give the initial state.
     #[arg(long)]
     pub(crate) from_rest: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct FleetArgs {
+    /// Plan (TOML, schema simgap-plan/1): where records lie, and the model of each machine.
+    pub(crate) plan: PathBuf,
+    /// Folder for the table, fleet.html, fleet.json and models/; what it holds of an earlier run is not done again.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Diagnoses at the same time; the result does not depend on it [default: all cores].
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<usize>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value = "human")]
+    pub(crate) format: Format,
 }
 
 #[derive(Args)]

@@ -16,10 +16,7 @@ use crate::stdout::say;
 const MOST_JOBS: usize = 1024;
 
 pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
-    if let Some(found) = args.jobs.filter(|jobs| !(1..=MOST_JOBS).contains(jobs)) {
-        let most = MOST_JOBS;
-        return Err(CliError::Jobs { found, most });
-    }
+    checked_jobs(args.jobs)?;
     let judged = if args.check.is_empty() {
         &args.train
     } else {
@@ -73,6 +70,17 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         }
     }
     Ok(())
+}
+
+/// Refuses a number of threads that no machine can do anything with.
+pub(crate) fn checked_jobs(jobs: Option<usize>) -> Result<Option<usize>, CliError> {
+    match jobs.filter(|jobs| !(1..=MOST_JOBS).contains(jobs)) {
+        Some(found) => Err(CliError::Jobs {
+            found,
+            most: MOST_JOBS,
+        }),
+        None => Ok(jobs),
+    }
 }
 
 fn summary(answer: &Answer) -> String {

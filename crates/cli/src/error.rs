@@ -23,6 +23,8 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Diagnose(#[from] DiagnoseError),
     #[error(transparent)]
+    Fleet(#[from] simgap_fleet::FleetError),
+    #[error(transparent)]
     Compare(#[from] CompareError),
     #[error(transparent)]
     Chart(#[from] ChartError),

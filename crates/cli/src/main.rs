@@ -10,6 +10,7 @@ mod demo;
 mod diagnose;
 mod effects;
 mod error;
+mod fleet;
 mod init;
 mod modes;
 mod pointer;
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
     let done = match &cli.command {
         Command::Diagnose(args) => diagnose::run(args),
         Command::Simulate(args) => simulate::run(args),
+        Command::Fleet(args) => fleet::run_fleet(args),
         Command::Demo(args) => demo::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Modes(args) => modes::run(args),

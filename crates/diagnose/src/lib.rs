@@ -81,6 +81,7 @@ mod structure;
 
 pub use diagnosis::*;
 pub use error::DiagnoseError;
+pub use outcome::NominalEstimate;
 pub use pipeline::{Outcome, Progress, Request, diagnose};
 pub use sets::{FittedEffect, FittedSet};
 pub use simgap_estimate::Cancel;

@@ -1,12 +1,46 @@
 //! What goes out beside the diagnosis: the corrected model, the predictions.
 
 use simgap_effects::{Action, Family, Placed};
-use simgap_estimate::{EstimateError, Problem};
+use simgap_estimate::{EstimateError, Fit, Problem};
 use simgap_model::{Location, Model};
 
 use crate::data::Data;
-use crate::diagnosis::{ChannelSeries, CheckSeries};
+use crate::diagnosis::{ChannelSeries, CheckSeries, NamedParameter};
 use crate::gap::Prediction;
+
+/// A nominal parameter as the final fit has it, under its prior.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NominalEstimate {
+    /// Catalogue name of its error, such as `stiffness_error`.
+    pub kind: &'static str,
+    /// Where it is.
+    pub at: Location,
+    /// Value with its 95 % interval, relative to the value of the model file: data and prior together.
+    pub parameter: NamedParameter,
+    /// Relative standard deviation of the prior: the stated uncertainty.
+    pub prior_std: f64,
+}
+
+/// Every nominal parameter of a fit; values that are several numbers count as their first.
+pub(crate) fn nominal_estimates(problem: &Problem, fit: &Fit) -> Vec<NominalEstimate> {
+    let nominal = fit.estimate.nominal.iter().zip(&fit.nominal_intervals);
+    nominal
+        .filter_map(|(placed, intervals)| {
+            let parameter = placed.effect.parameters().first()?;
+            let interval = intervals.first()?;
+            Some(NominalEstimate {
+                kind: placed.effect.kind(),
+                at: placed.at.clone(),
+                parameter: NamedParameter {
+                    name: parameter.name.to_string(),
+                    value: interval.value,
+                    ci95: interval.ci95,
+                },
+                prior_std: problem.stated_std(placed),
+            })
+        })
+        .collect()
+}
 
 /// The nominal model with its parameters changed and the effects listed.
 pub(crate) fn corrected_model(nominal: &Model, placed: &[Placed]) -> Model {

@@ -22,7 +22,7 @@ use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::excerpt::excerpts;
 use crate::final_fit::fit_to_all;
 use crate::locate::Located;
-use crate::outcome::{corrected_model, series};
+use crate::outcome::{NominalEstimate, corrected_model, nominal_estimates, series};
 use crate::prepared::Prepared;
 use crate::sets::{FittedSet, fitted_sets};
 use crate::{DiagnoseError, Status, describe, locate};
@@ -71,6 +71,9 @@ pub struct Outcome {
     pub series: Vec<CheckSeries>,
     /// The motion across each member along the check records.
     pub motions: Vec<PlaceMotion>,
+    /// What the final fit says of each nominal parameter beside the named effects; empty where its values are those of
+    /// something else (`unknown`).
+    pub nominal: Vec<NominalEstimate>,
     /// Every set that was fitted, likeliest first, with the terms that decide: for replay and inspection.
     pub sets: Vec<FittedSet>,
 }
@@ -241,6 +244,7 @@ fn finish<R: Borrow<Record>>(
         states: locate::states(&located, &motions),
         records: locate::records(&located),
     };
+    let verdict_status = verdict.status;
     let mut notes: Vec<String> = checked.notes.clone();
     if located.is_hidden {
         let hidden = "the gap hardly stands out of the noise: where it lies is where the noise is";
@@ -256,6 +260,10 @@ fn finish<R: Borrow<Record>>(
             &checked.predictions[2],
         )?,
         motions,
+        nominal: match verdict_status {
+            Status::Unknown => vec![],
+            _ => nominal_estimates(&prepared.train, &estimate),
+        },
         sets: fitted_sets(&decision.posterior),
         diagnosis: Diagnosis {
             schema: "simgap-diagnosis/1",

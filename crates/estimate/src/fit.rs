@@ -45,6 +45,8 @@ pub struct Fit {
     pub variance: Vec<f64>,
     /// Intervals of the effects' parameters, effect by effect.
     pub intervals: Vec<Vec<Interval>>,
+    /// Intervals of the nominal parameters, one after the other: what data and prior together say of them.
+    pub nominal_intervals: Vec<Vec<Interval>>,
     /// The first sum of (1): minus the log-likelihood, but for a constant that all sets share.
     pub misfit: f64,
     /// How the data curve the log-likelihood at the estimate.
@@ -288,8 +290,8 @@ fn finish(
     let spread = variances(&curvature.with_fixed_priors(), &all);
     let misfit = objective - merit.prior(layout, theta);
     let estimate = layout.unpack(theta);
-    let interval = |e: usize, i: usize, value: f64| {
-        let Some(entry) = layout.entry(e, i) else {
+    let interval = |entry: Option<usize>, value: f64| {
+        let Some(entry) = entry else {
             return Interval {
                 value,
                 ci95: [f64::NEG_INFINITY, f64::INFINITY],
@@ -308,7 +310,17 @@ fn finish(
     let intervals = effects
         .map(|(e, placed)| {
             let values = placed.values.iter().enumerate();
-            values.map(|(i, &value)| interval(e, i, value)).collect()
+            let of = |(i, &value)| interval(layout.entry(e, i), value);
+            values.map(of).collect()
+        })
+        .collect();
+    // They stand behind the shared values of the effects, in their order.
+    let mut next = layout.effect_len()..;
+    let nominal = estimate.nominal.iter();
+    let nominal_intervals = nominal
+        .map(|placed| {
+            let values = placed.values.iter();
+            values.map(|&value| interval(next.next(), value)).collect()
         })
         .collect();
     Fit {
@@ -316,6 +328,7 @@ fn finish(
         objective,
         variance,
         intervals,
+        nominal_intervals,
         misfit,
         curvature,
         discrepancy: at.discrepancy,

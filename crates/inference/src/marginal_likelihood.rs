@@ -181,6 +181,7 @@ mod tests {
             misfit: 3.0,
             variance: vec![],
             intervals: vec![],
+            nominal_intervals: vec![],
             curvature: Curvature {
                 hessian,
                 coordinates: values.iter().enumerate().map(coordinate).collect(),

@@ -10,6 +10,7 @@
 mod answer;
 mod compared;
 mod error;
+mod fleet;
 mod frame;
 mod model;
 mod record;
@@ -32,5 +33,10 @@ fn _simgap(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(compared::compare, module)?)?;
     module.add_function(wrap_pyfunction!(tables::simulate, module)?)?;
     module.add_function(wrap_pyfunction!(tables::modes, module)?)?;
-    module.add_function(wrap_pyfunction!(tables::effects, module)?)
+    module.add_function(wrap_pyfunction!(tables::effects, module)?)?;
+    module.add_function(wrap_pyfunction!(fleet::fleet_places, module)?)?;
+    module.add_function(wrap_pyfunction!(fleet::fleet_units, module)?)?;
+    module.add_function(wrap_pyfunction!(fleet::fleet_answer, module)?)?;
+    module.add_function(wrap_pyfunction!(fleet::fleet_put, module)?)?;
+    module.add_function(wrap_pyfunction!(fleet::fleet_report, module)?)
 }

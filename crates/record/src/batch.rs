@@ -63,12 +63,12 @@ impl Batch {
     /// # Errors
     ///
     /// [`RecordError::Unwritable`] when the place is no regular file, or when the system refuses.
-    pub fn add(&mut self, path: &Path, text: &str) -> Result<(), RecordError> {
+    pub fn add(&mut self, path: &Path, content: impl AsRef<[u8]>) -> Result<(), RecordError> {
         let stage = || {
             let target = target(path)?;
             let mut file = new_file_in(parent(&target))?;
             // The file itself: its wrapper would tell a random name.
-            file.as_file_mut().write_all(text.as_bytes())?;
+            file.as_file_mut().write_all(content.as_ref())?;
             Ok((target, file.into_temp_path()))
         };
         let label = path.display().to_string();

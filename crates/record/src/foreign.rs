@@ -21,6 +21,20 @@ pub(crate) fn guarded<T>(
     what: &str,
     read: impl FnOnce() -> Result<T, FormatFault>,
 ) -> Result<T, FormatFault> {
+    without_panic(read).unwrap_or_else(|| {
+        Err(FormatFault::Damaged {
+            what: what.to_owned(),
+            reason: "its bytes contradict each other".to_owned(),
+        })
+    })
+}
+
+/// Calls code of another crate that may panic on damaged input: `None` where it does, and nothing is printed.
+///
+/// ```
+/// assert_eq!(simgap_record::without_panic(|| 7), Some(7));
+/// ```
+pub fn without_panic<T>(read: impl FnOnce() -> T) -> Option<T> {
     static HUSHED: Once = Once::new();
     HUSHED.call_once(|| {
         let print = take_hook();
@@ -33,12 +47,7 @@ pub(crate) fn guarded<T>(
     let outer = CAUGHT.replace(true);
     let read = catch_unwind(AssertUnwindSafe(read));
     CAUGHT.set(outer);
-    read.unwrap_or_else(|_| {
-        Err(FormatFault::Damaged {
-            what: what.to_owned(),
-            reason: "its bytes contradict each other".to_owned(),
-        })
-    })
+    read.ok()
 }
 
 /// What another crate says, fit for one line of ours.

@@ -15,12 +15,12 @@
 
 pub mod chart;
 pub mod lines;
+pub mod markup;
 pub mod page;
 pub mod schematic;
 pub mod summary;
 
 mod bands;
-mod markup;
 mod number;
 mod restoring;
 mod unit;

@@ -1,8 +1,16 @@
-//! Text made safe for HTML and SVG.
+//! Text made safe for HTML and SVG, and pages made of it.
+//!
+//! ```
+//! use simgap_report::markup::Html;
+//! let mut html = Html::default();
+//! html.element("p", &[("class", "note")], "a < b");
+//! assert_eq!(html.finish(), "<p class=\"note\">a &lt; b</p>\n");
+//! ```
 
 /// `text` with the five special characters escaped and control characters (not legal in XML)
 /// dropped, safe between tags and inside quoted attributes.
-pub(crate) fn escape(text: &str) -> String {
+#[must_use]
+pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -20,14 +28,16 @@ pub(crate) fn escape(text: &str) -> String {
 }
 
 /// HTML under construction. Elements close themselves, text is escaped.
+///
+/// [`page_of`](crate::page::page_of) makes a whole page of it in the look of the report.
 #[derive(Debug, Default)]
-pub(crate) struct Html {
+pub struct Html {
     out: String,
 }
 
 impl Html {
     /// An element with further content written by `inside`.
-    pub(crate) fn within<R>(
+    pub fn within<R>(
         &mut self,
         tag: &str,
         attributes: &[(&str, &str)],
@@ -40,30 +50,31 @@ impl Html {
     }
 
     /// An element that holds only text.
-    pub(crate) fn element(&mut self, tag: &str, attributes: &[(&str, &str)], text: &str) {
+    pub fn element(&mut self, tag: &str, attributes: &[(&str, &str)], text: &str) {
         self.start(tag, attributes);
         self.text(text);
         self.out.push_str(&format!("</{tag}>\n"));
     }
 
     /// An element without content or end tag.
-    pub(crate) fn void(&mut self, tag: &str, attributes: &[(&str, &str)]) {
+    pub fn void(&mut self, tag: &str, attributes: &[(&str, &str)]) {
         self.start(tag, attributes);
         self.out.push('\n');
     }
 
     /// Text.
-    pub(crate) fn text(&mut self, text: &str) {
+    pub fn text(&mut self, text: &str) {
         self.out.push_str(&escape(text));
     }
 
     /// Markup that is safe already: a picture of [`crate::chart`], the style sheet.
-    pub(crate) fn raw(&mut self, markup: &str) {
+    pub fn raw(&mut self, markup: &str) {
         self.out.push_str(markup);
     }
 
     /// What was written.
-    pub(crate) fn finish(self) -> String {
+    #[must_use]
+    pub fn finish(self) -> String {
         self.out
     }
 

@@ -7,8 +7,8 @@ use super::{Finding, Source, Workspace};
 const PROGRAMS: [&str; 3] = ["cli", "python", "xtask"];
 
 /// Who reads and writes files. `record` for everybody else: tables of numbers, and text put in
-/// place in one step. `report` makes pages in memory; `app` writes them for the program and for Python.
-const TOUCH_FILES: [&str; 4] = ["record", "app", "cli", "xtask"];
+/// place in one step. `report` makes pages in memory; `app` writes them for the program and for Python, `fleet` the table.
+const TOUCH_FILES: [&str; 5] = ["record", "app", "fleet", "cli", "xtask"];
 
 /// What prints, what reads a clock, what opens a socket.
 const LOUD: [(&str, &str); 13] = [
@@ -90,7 +90,7 @@ pub fn libraries_are_silent_and_still(workspace: &Workspace) -> Vec<Finding> {
     findings
 }
 
-/// Only `record`, `app`, `cli` and `xtask` touch files.
+/// Only `record`, `app`, `fleet`, `cli` and `xtask` touch files.
 #[must_use]
 pub fn who_may_touch_files(workspace: &Workspace) -> Vec<Finding> {
     let mut findings = Vec::new();

@@ -87,10 +87,10 @@ fn verify_frequencies_one_bin_up_are_red() {
 #[test]
 fn verify_phases_one_degree_up_are_red() {
     let page = changed(peaks(), |column, cell| {
-        if let (true, Cell::Text(text)) = (column == "phase [°]", cell) {
-            if let Ok(degrees) = text.parse::<f64>() {
-                *text = format!("{:.2}", degrees + 1.0);
-            }
+        if let (true, Cell::Text(text)) = (column == "phase [°]", cell)
+            && let Ok(degrees) = text.parse::<f64>()
+        {
+            *text = format!("{:.2}", degrees + 1.0);
         }
     });
     assert_red(&page, "phases");

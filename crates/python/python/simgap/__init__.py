@@ -16,6 +16,7 @@ Everything inside is in SI units. The same input gives the same bytes as the com
 Every error is a ``SimgapError`` with one line: where, what was found, what is needed.
 """
 
+from . import fleet
 from ._compare import Agreement, Comparison, compare
 from ._diagnose import diagnose
 from ._diagnosis import Diagnosis
@@ -73,6 +74,7 @@ __all__ = [
     "compare",
     "diagnose",
     "effects",
+    "fleet",
     "modes",
     "read",
     "simulate",

@@ -7,8 +7,8 @@
 use pulp::{Arch, Simd, WithSimd};
 use simgap_model::Node;
 
-use super::set::LaneSet;
 use super::row::{Row, State};
+use super::set::LaneSet;
 use super::wide::Wide;
 use super::{LANES, Pack};
 use crate::exact::propagator::ExactPropagator;

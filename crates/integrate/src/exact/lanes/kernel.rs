@@ -2,9 +2,9 @@
 
 use pulp::{Arch, Simd};
 
-use super::set::LaneSet;
 use super::compact::Compact;
 use super::row::{COMPARED, Row, State};
+use super::set::LaneSet;
 use super::wide::Wide;
 use super::{LANES, Pack};
 use crate::exact::propagator::ExactPropagator;
