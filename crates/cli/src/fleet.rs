@@ -10,7 +10,7 @@ use simgap_fleet::{Counts, Plan, run, units};
 use crate::args::{FleetArgs, Format};
 use crate::diagnose::checked_jobs;
 use crate::error::CliError;
-use crate::{say, say_plain};
+use crate::stdout::{say, say_plain};
 
 pub(crate) fn run_fleet(args: &FleetArgs) -> Result<(), CliError> {
     let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);

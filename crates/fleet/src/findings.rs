@@ -8,6 +8,7 @@ use crate::course::{Course, course};
 use crate::factor::{Division, Explanation, Factor, divisions, factors};
 use crate::observe::{Cause, Estimate, NORMAL_95, Observation, Quantity, is_nominal};
 use crate::population::{mean, outlying, population};
+use crate::scope::Scope;
 use crate::time::days;
 use crate::words;
 
@@ -21,20 +22,6 @@ const LEAST_SHIFT: f64 = 0.01;
 const SHIFTED: f64 = 3.0;
 /// A course that so many machines share is the fleet's.
 const SHARED: f64 = 0.5;
-
-/// Whose a finding is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Scope {
-    /// All machines: the model lacks it.
-    Common,
-    /// Machines of their own.
-    Machine,
-    /// Days, rigs, loads: no machine is to blame.
-    Condition,
-    /// What differs between machines differs in something else as well: nobody is to blame.
-    Undecided,
-}
 
 /// One thing that the fleet says.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -7,10 +7,11 @@ use simgap_report::markup::Html;
 use simgap_report::page::{page_of, table_of};
 
 use crate::charts::{Drawn, charts};
-use crate::findings::{Finding, Scope, Told};
+use crate::findings::{Finding, Told};
 use crate::observe::{Cause, Observation};
 use crate::population::median;
 use crate::prior::FleetModel;
+use crate::scope::Scope;
 use crate::words::number;
 
 /// Rows and columns of the heat map, and rows of the list of failures.

@@ -215,6 +215,12 @@ pub fn is_named(glob: &str, name: &str) -> bool {
     matched_name(&pieces, name, &Fields::new(), &mut |f| Some(f.clone())).is_some()
 }
 
+/// Whether a path names a place that only other programs reach, such as `s3://bucket/key`.
+#[must_use]
+pub fn is_remote(path: &str) -> bool {
+    path.contains("://")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

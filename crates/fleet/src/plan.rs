@@ -9,9 +9,8 @@ use simgap_app::diagnosis::known_kinds;
 use simgap_app::input::RecordOptions;
 
 use crate::FleetError;
-use crate::pattern::{Fields, Pattern};
-use crate::table::FIXED_COLUMNS;
-use crate::unit::is_remote;
+use crate::pattern::{Fields, Pattern, is_remote};
+use crate::row::FIXED_COLUMNS;
 
 /// Schema of a plan.
 pub const SCHEMA: &str = "simgap-plan/1";

@@ -9,9 +9,10 @@ use simgap_effects::{Action, Placed, SiteKind, find, sites};
 use simgap_model::{Location, Model};
 
 use crate::FleetError;
-use crate::findings::{Finding, Scope, Series, is_of_the_model};
+use crate::findings::{Finding, Series, is_of_the_model};
 use crate::observe::{Estimate, Observation, Quantity};
 use crate::population::{Population, mean, population};
+use crate::scope::Scope;
 
 /// The least relative standard deviation that is written: a fleet is no proof of the last digits of the next machine.
 const LEAST_UNCERTAINTY: f64 = 1e-3;

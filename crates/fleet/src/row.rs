@@ -4,6 +4,33 @@ use simgap_app::diagnosis::Answer;
 use simgap_diagnose::{NamedEffect, NamedParameter, Status};
 use simgap_model::Location;
 
+/// Columns that every table has, with those that its folders hold; conditions have other names.
+pub const FIXED_COLUMNS: [&str; 23] = [
+    "machine",
+    "date",
+    "role",
+    "status",
+    "complete",
+    "refuted",
+    "kind",
+    "place",
+    "probability",
+    "parameter",
+    "value",
+    "low",
+    "high",
+    "prior_std",
+    "gap_nominal",
+    "gap_corrected",
+    "noise_floor",
+    "closed",
+    "reason",
+    "train",
+    "check",
+    "inputs",
+    "version",
+];
+
 /// What a row tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {

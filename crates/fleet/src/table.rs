@@ -18,32 +18,6 @@ use crate::FleetError;
 use crate::row::{Role, Row};
 use crate::unit::Unit;
 
-/// Columns that every table has, with those that its folders hold; conditions have other names.
-pub const FIXED_COLUMNS: [&str; 23] = [
-    "machine",
-    "date",
-    "role",
-    "status",
-    "complete",
-    "refuted",
-    "kind",
-    "place",
-    "probability",
-    "parameter",
-    "value",
-    "low",
-    "high",
-    "prior_std",
-    "gap_nominal",
-    "gap_corrected",
-    "noise_floor",
-    "closed",
-    "reason",
-    "train",
-    "check",
-    "inputs",
-    "version",
-];
 /// Key of the digest in the metadata of a file.
 const DIGEST: &str = "simgap.inputs";
 /// No file of the table is longer, bytes.

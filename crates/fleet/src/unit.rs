@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::FleetError;
-use crate::pattern::{Fields, Pattern, is_named};
+use crate::pattern::{Fields, Pattern, is_named, is_remote};
 use crate::plan::{DATE, MACHINE, Plan, RECORD};
 
 /// Folders inside each other that are looked into.
@@ -147,12 +147,6 @@ fn unit(
         mend: plan.reading.mend,
         known: None,
     })
-}
-
-/// Whether a path names a place that only other programs reach, such as `s3://bucket/key`.
-#[must_use]
-pub fn is_remote(path: &str) -> bool {
-    path.contains("://")
 }
 
 /// The file of a unit in the table: partitions by machine and date as Hive writes them, then the conditions.

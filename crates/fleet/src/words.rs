@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::course::Course;
 use crate::factor::Explanation;
-use crate::findings::Scope;
 use crate::observe::{Cause, Estimate, NORMAL_95, Quantity};
 use crate::population::Population;
+use crate::scope::Scope;
 
 /// Names that a sentence lists.
 const LISTED: usize = 12;

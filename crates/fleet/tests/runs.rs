@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use simgap_diagnose::Cancel;
-use simgap_fleet::findings::Scope;
+use simgap_fleet::scope::Scope;
 use simgap_fleet::{Counts, FleetError, Plan, Role, Table, Unit, report, run, units};
 
 #[allow(dead_code)]

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use simgap_fleet::findings::{Finding, Scope};
+use simgap_fleet::findings::Finding;
+use simgap_fleet::scope::Scope;
 use simgap_fleet::{Fleet, Plan, Role, Row, Table, Unit, encode, report};
 use simgap_model::Model;
 

@@ -114,6 +114,13 @@ pub use channel::{Channel, Conversion};
 pub use csv_read::{parse_csv, read_csv, read_csv_channels, read_csv_some};
 pub use error::{Place, RecordError};
 pub use faults::{FormatFault, MapFault, MendFault, SelectionFault, TextFault};
+#[cfg(any(
+    feature = "arrow",
+    feature = "matlab73",
+    feature = "mdf",
+    feature = "parquet",
+    feature = "xlsx"
+))]
 pub use foreign::without_panic;
 pub use format::Format;
 pub use limits::{MAX_FILE_BYTES, MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS};

@@ -7,18 +7,14 @@
 //! moving bases in column 0. Members between the same nodes lie beside each other.
 
 mod drives;
+mod parts;
 
-use simgap_model::{GROUND, InputKind, Location, Model, same_pair};
+use parts::{BOX, COLUMN, FIRST, ROW, boxed, driven, label, lines_below, measured_at};
+use simgap_model::{GROUND, Location, Model, same_pair};
 
 use crate::chart::NEUTRAL_COLOURS;
 use crate::markup::escape;
 
-/// Distances between columns and rows, and the size of a node, pixels.
-const COLUMN: f64 = 190.0;
-const ROW: f64 = 130.0;
-const BOX: [f64; 2] = [88.0, 52.0];
-/// The first column and the first row.
-const FIRST: [f64; 2] = [90.0, 80.0];
 /// Where the wall stands.
 const WALL: f64 = 30.0;
 /// Distance between members that lie beside each other.
@@ -225,14 +221,6 @@ fn wall(height: f64) -> String {
     )
 }
 
-fn label([x, y]: [f64; 2], text: &str) -> String {
-    format!(
-        "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" stroke=\"none\" fill=\"{}\">{}</text>",
-        NEUTRAL_COLOURS[0].light,
-        escape(text)
-    )
-}
-
 /// A member from one point to another.
 fn member(shape: Shape, name: &str, from: [f64; 2], to: [f64; 2]) -> String {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
@@ -334,69 +322,6 @@ fn node_box(model: &Model, node: &Node) -> String {
     lines.extend(acting.map(|effect| effect.kind.replace('_', " ")));
     text.push_str(&lines_below(node.at, &lines));
     text
-}
-
-/// A box with a name.
-fn boxed(name: &str, [x, y]: [f64; 2], [w, h]: [f64; 2], is_base: bool) -> String {
-    let dashes = if is_base {
-        " stroke-dasharray=\"5 3\""
-    } else {
-        ""
-    };
-    format!(
-        "<rect x=\"{}\" y=\"{}\" width=\"{w}\" height=\"{h}\" rx=\"3\" fill=\"{}\"{dashes}/>{}",
-        x - w / 2.0,
-        y - h / 2.0,
-        if is_base { "#FFFFFF" } else { "#EAEEF2" },
-        label([x, y + 4.0], name)
-    )
-}
-
-/// What drives the part of a name, above its box.
-fn driven(model: &Model, name: &str, [x, y]: [f64; 2], [w, h]: [f64; 2]) -> String {
-    let mut text = String::new();
-    let drives = model.inputs.iter().filter(|input| input.at == name);
-    for (k, input) in drives.enumerate() {
-        let above = y - h / 2.0 - 10.0 - 15.0 * k as f64;
-        let kind = match input.kind {
-            InputKind::Force => "force",
-            InputKind::Displacement => "displacement",
-            InputKind::Command => "command",
-            InputKind::SetPoint => "set point",
-        };
-        text.push_str(&format!(
-            "<path d=\"M{} {above}h24m-6 -4l6 4l-6 4\"/>",
-            x - w / 2.0
-        ));
-        let words = format!("{} ({kind})", input.channel);
-        text.push_str(&format!(
-            "<text x=\"{}\" y=\"{}\" stroke=\"none\" fill=\"{}\">{}</text>",
-            x - w / 2.0 + 30.0,
-            above + 4.0,
-            NEUTRAL_COLOURS[0].light,
-            escape(&words)
-        ));
-    }
-    text
-}
-
-/// The channels that measure at a name.
-fn measured_at(model: &Model, name: &str) -> Vec<String> {
-    let measured = model.outputs.iter().filter(|output| match &output.between {
-        Some([a, _]) => a == name,
-        None => output.at.as_deref() == Some(name),
-    });
-    let lines = measured.map(|output| format!("measured: {}", output.channel));
-    lines.collect()
-}
-
-/// Lines below a box.
-fn lines_below([x, y]: [f64; 2], lines: &[String]) -> String {
-    let places = lines.iter().enumerate().map(|(k, line)| {
-        let below = y + BOX[1] / 2.0 + 15.0 + 14.0 * k as f64;
-        label([x, below], line)
-    });
-    places.collect()
 }
 
 #[cfg(test)]

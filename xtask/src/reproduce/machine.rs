@@ -3,6 +3,7 @@
 use simgap_mold::{BeamEnds, HeaveRoll, LeafSpring, LockedCylinder, MoldOnLeaves};
 use simgap_report::chart::{LineChart, Mark, Role, Series};
 
+use super::frame::{LEAF_COUNT, LEAVES_M, span_ratio};
 use super::number::range;
 use super::servo::Servo;
 use super::{Block, Cell, Context, Page, ReproduceError, Table, significant};
@@ -15,12 +16,6 @@ const BULK_MODULI_PA: [f64; 4] = [0.7e9, 1.0e9, 1.4e9, 1.7e9];
 
 /// Bulk modulus of mineral oil without air, Pa (`merritt1967`).
 pub(crate) const BULK_MODULUS_OF_OIL_PA: [f64; 2] = [1.4e9, 1.7e9];
-
-/// **Assumed**: length, width and thickness of leaf springs of steel, m. Nothing is printed.
-pub(crate) const LEAVES_M: [[f64; 3]; 2] = [[1.06, 0.2, 0.010], [1.50, 0.2, 0.020]];
-
-/// Leaf springs of the machine (Fig. 8).
-pub(crate) const LEAF_COUNT: usize = 4;
 
 /// Damping ratios of the heave for the roll, 1: that of Table 1, and less.
 pub(crate) const DAMPING_SHARES: [f64; 3] = [1.0, 0.2, 0.05];
@@ -269,11 +264,6 @@ fn leaf_figure(context: &Context) -> Result<Block, ReproduceError> {
         ),
         chart,
     ))
-}
-
-/// Half span over radius of gyration that puts the roll at the torsional mode of the text.
-pub(crate) fn span_ratio(context: &Context) -> f64 {
-    context.stated.torsional_mode.si() / context.mold.natural_freq_hz()
 }
 
 /// What mismatch of the cylinders makes the jump of Table 3, and the peak to peak (N) that it makes at the excitations

@@ -12,6 +12,7 @@ mod differentiators;
 mod error;
 mod figures;
 mod files;
+mod frame;
 mod machine;
 mod number;
 mod page;

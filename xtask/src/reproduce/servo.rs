@@ -2,7 +2,7 @@
 
 use simgap_mold::{LeafSpring, ServoDrive, ServoMold};
 
-use super::machine::{LEAF_COUNT, LEAVES_M, span_ratio};
+use super::frame::{LEAF_COUNT, LEAVES_M, span_ratio};
 use super::{Cell, Context, ReproduceError, Table, significant};
 
 /// One litre a minute, m³/s.

@@ -137,6 +137,7 @@ mod tests {
             objective: 0.0,
             variance: vec![],
             intervals: vec![],
+            nominal_intervals: vec![],
             misfit: 0.0,
             curvature: Curvature {
                 hessian: Mat::from_fn(3, 3, |i, j| {

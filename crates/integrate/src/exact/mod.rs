@@ -6,6 +6,7 @@ mod kernel;
 pub mod lanes;
 mod law;
 mod march;
+mod members;
 mod plant;
 mod propagator;
 mod together;

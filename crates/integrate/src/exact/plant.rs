@@ -4,8 +4,8 @@ use simgap_model::Node;
 
 use super::kernel::Kernel;
 use super::law::{Element, MemberMotion};
+use super::members::Together;
 use super::propagator::ExactPropagator;
-use super::together::Together;
 
 /// Sweeps over several elements before the step is taken as it stands. Contraction per sweep is
 /// the coupling through the masses within one step, far below one.

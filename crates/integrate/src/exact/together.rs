@@ -12,44 +12,11 @@
 //! pivots.
 
 use super::law::{MemberMotion, Tangent};
+use super::members::Together;
 use super::plant::{FORCE_TOLERANCE, Plant, SECANT_STEPS, SWEEPS};
 
 /// Relative change of the forces in a Newton step after which there is none: the square root of [`FORCE_TOLERANCE`].
 pub(super) const LAST_STEP: f64 = 1e-4;
-
-/// The elements that are solved together, and room for it.
-#[derive(Default)]
-pub(super) struct Together {
-    /// Places among all elements.
-    pub(super) members: Vec<usize>,
-    /// S of each at the start of the step.
-    pub(super) before: Vec<f64>,
-    without: Vec<[f64; 2]>,
-    old: Vec<f64>,
-    matrix: Vec<f64>,
-    residual: Vec<f64>,
-}
-
-impl Together {
-    pub(super) fn new(members: Vec<usize>) -> Together {
-        let g = members.len();
-        Together {
-            members,
-            before: vec![0.0; g],
-            without: vec![[0.0; 2]; g],
-            old: vec![0.0; g],
-            matrix: vec![0.0; g * g],
-            residual: vec![0.0; g],
-        }
-    }
-
-    /// At the first sample.
-    pub(super) fn begin(&mut self, smooth: &[f64]) {
-        for (&i, before) in self.members.iter().zip(&mut self.before) {
-            *before = smooth[i];
-        }
-    }
-}
 
 impl Plant<'_> {
     /// Sweeps over the elements at the most: none is solved again where nothing else moves it.

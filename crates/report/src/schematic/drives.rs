@@ -5,7 +5,7 @@
 
 use simgap_model::{Block, Model, Valve};
 
-use super::{BOX, COLUMN, FIRST, ROW, boxed, driven, lines_below, measured_at};
+use super::parts::{BOX, COLUMN, FIRST, ROW, boxed, driven, lines_below, measured_at};
 
 /// Size of a block or a valve, pixels: their names are longer than those of masses.
 const PART: [f64; 2] = [120.0, BOX[1]];

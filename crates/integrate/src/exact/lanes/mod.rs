@@ -15,6 +15,7 @@ mod compact;
 mod element;
 mod kernel;
 mod law;
+mod members;
 mod row;
 mod set;
 mod solve;

@@ -8,32 +8,6 @@ use super::{Mask, Pack};
 use crate::exact::plant::{FORCE_TOLERANCE, SECANT_STEPS};
 use crate::exact::together::LAST_STEP;
 
-/// The elements that are solved together, and room for it.
-pub(super) struct Together {
-    /// Places among all elements.
-    pub(super) members: Vec<usize>,
-    /// S of each at the start of the step.
-    before: Vec<Pack>,
-    without: Vec<[Pack; 2]>,
-    old: Vec<Pack>,
-    matrix: Vec<Pack>,
-    residual: Vec<Pack>,
-}
-
-impl Together {
-    pub(super) fn new(members: &[usize], before: Vec<Pack>) -> Together {
-        let g = members.len();
-        Together {
-            members: members.to_vec(),
-            before,
-            without: vec![[Pack::ZERO; 2]; g],
-            old: vec![Pack::ZERO; g],
-            matrix: vec![Pack::ZERO; g * g],
-            residual: vec![Pack::ZERO; g],
-        }
-    }
-}
-
 /// A whole solution at a time: not to be compiled again with every march and every observer.
 struct Solve<'a, 'b>(&'a mut Block<'b>, &'a Mask);
 

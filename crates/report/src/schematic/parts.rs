@@ -1,0 +1,83 @@
+//! Boxes with names, and what is written beside them.
+
+use simgap_model::{InputKind, Model};
+
+use crate::chart::NEUTRAL_COLOURS;
+use crate::markup::escape;
+
+/// Distances between columns and rows, and the size of a node, pixels.
+pub(super) const COLUMN: f64 = 190.0;
+pub(super) const ROW: f64 = 130.0;
+pub(super) const BOX: [f64; 2] = [88.0, 52.0];
+/// The first column and the first row.
+pub(super) const FIRST: [f64; 2] = [90.0, 80.0];
+pub(super) fn label([x, y]: [f64; 2], text: &str) -> String {
+    format!(
+        "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" stroke=\"none\" fill=\"{}\">{}</text>",
+        NEUTRAL_COLOURS[0].light,
+        escape(text)
+    )
+}
+
+/// A box with a name.
+pub(super) fn boxed(name: &str, [x, y]: [f64; 2], [w, h]: [f64; 2], is_base: bool) -> String {
+    let dashes = if is_base {
+        " stroke-dasharray=\"5 3\""
+    } else {
+        ""
+    };
+    format!(
+        "<rect x=\"{}\" y=\"{}\" width=\"{w}\" height=\"{h}\" rx=\"3\" fill=\"{}\"{dashes}/>{}",
+        x - w / 2.0,
+        y - h / 2.0,
+        if is_base { "#FFFFFF" } else { "#EAEEF2" },
+        label([x, y + 4.0], name)
+    )
+}
+
+/// What drives the part of a name, above its box.
+pub(super) fn driven(model: &Model, name: &str, [x, y]: [f64; 2], [w, h]: [f64; 2]) -> String {
+    let mut text = String::new();
+    let drives = model.inputs.iter().filter(|input| input.at == name);
+    for (k, input) in drives.enumerate() {
+        let above = y - h / 2.0 - 10.0 - 15.0 * k as f64;
+        let kind = match input.kind {
+            InputKind::Force => "force",
+            InputKind::Displacement => "displacement",
+            InputKind::Command => "command",
+            InputKind::SetPoint => "set point",
+        };
+        text.push_str(&format!(
+            "<path d=\"M{} {above}h24m-6 -4l6 4l-6 4\"/>",
+            x - w / 2.0
+        ));
+        let words = format!("{} ({kind})", input.channel);
+        text.push_str(&format!(
+            "<text x=\"{}\" y=\"{}\" stroke=\"none\" fill=\"{}\">{}</text>",
+            x - w / 2.0 + 30.0,
+            above + 4.0,
+            NEUTRAL_COLOURS[0].light,
+            escape(&words)
+        ));
+    }
+    text
+}
+
+/// The channels that measure at a name.
+pub(super) fn measured_at(model: &Model, name: &str) -> Vec<String> {
+    let measured = model.outputs.iter().filter(|output| match &output.between {
+        Some([a, _]) => a == name,
+        None => output.at.as_deref() == Some(name),
+    });
+    let lines = measured.map(|output| format!("measured: {}", output.channel));
+    lines.collect()
+}
+
+/// Lines below a box.
+pub(super) fn lines_below([x, y]: [f64; 2], lines: &[String]) -> String {
+    let places = lines.iter().enumerate().map(|(k, line)| {
+        let below = y + BOX[1] / 2.0 + 15.0 + 14.0 * k as f64;
+        label([x, below], line)
+    });
+    places.collect()
+}
