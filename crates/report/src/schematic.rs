@@ -1,7 +1,7 @@
 //! A picture of a model: nodes from the ground outwards, what joins them, what drives it and what is measured.
 //!
 //! Points of a body stand beside it, joined by a plain line; a beam is a double line, a cylinder a piston in its tube. Blocks
-//! and valves stand below the machine ([`drives`]).
+//! and valves stand below the machine (`drives`).
 //!
 //! Column d holds the nodes that are d members away from what does not move freely: the ground and, below all other rows,
 //! moving bases in column 0. Members between the same nodes lie beside each other.
