@@ -188,10 +188,18 @@ class Model:
         """Adds a double-acting hydraulic cylinder between rod and housing, in SI units; its
         pressures are the nodes ``"name.p1"`` and ``"name.p2"``. ``pressures`` are those at the
         start, ``position`` is where in the stroke it moves (its middle where not stated)."""
-        oil = {"bulk_modulus": bulk_modulus, "leakage": leakage}
-        values = {"name": name, "between": list(between), "areas": list(areas)}
-        size = {"dead_volumes": list(dead_volumes), "stroke": stroke, "position": position}
-        more = {
+        oil: dict[str, _Value | None] = {"bulk_modulus": bulk_modulus, "leakage": leakage}
+        values: dict[str, _Value | None] = {
+            "name": name,
+            "between": list(between),
+            "areas": list(areas),
+        }
+        size: dict[str, _Value | None] = {
+            "dead_volumes": list(dead_volumes),
+            "stroke": stroke,
+            "position": position,
+        }
+        more: dict[str, _Value | None] = {
             "external_leakage": external_leakage,
             "pressures": None if pressures is None else list(pressures),
         }
@@ -235,8 +243,12 @@ class Model:
         the signals ``plus`` less those of ``minus``: blocks, nodes (their displacement, m) and
         chambers (their pressure, Pa). Its output commands a valve, or is a force, N, on the node
         ``force``."""
-        values = {"name": name, "numerator": list(numerator), "denominator": list(denominator)}
-        joined = {
+        values: dict[str, _Value | None] = {
+            "name": name,
+            "numerator": list(numerator),
+            "denominator": list(denominator),
+        }
+        joined: dict[str, _Value | None] = {
             "plus": None if plus is None else list(plus),
             "minus": None if minus is None else list(minus),
         }
