@@ -135,6 +135,7 @@ fn drives(assembly: &mut Assembly, plant: &Plant, setup: &Setup) -> Vec<Drive> {
         let rate = wanted.then(|| grid.rate(setup.step_s));
         let second = rate.as_ref().map(|rate| rate.rate(setup.step_s));
         list.push(Drive {
+            sent: source.clone(),
             value: grid,
             rate,
             second,
@@ -192,22 +193,12 @@ impl Bench {
         let mut assembly = assemble(plant, effects, record);
         let drives = drives(&mut assembly, plant, setup);
         let first = first_state(&assembly, setup);
-        let mut run = march(
+        let run = march(
             &assembly.machine,
             &drives,
             &first,
             self.span(record, substeps),
         );
-        // A recorder sees what was sent, not what a path has made of it; in a closed loop what the controller sent.
-        for (i, source) in setup.sources.iter().enumerate() {
-            if plant.control.is_some() && i == 0 {
-                continue;
-            }
-            for (k, value) in run.inputs[i].iter_mut().enumerate() {
-                let time = run.start + k as f64 / KEPT as f64;
-                *value = source.at(time, time);
-            }
-        }
         let fine = run
             .outputs
             .iter()

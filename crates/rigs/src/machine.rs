@@ -55,6 +55,8 @@ pub enum Mode {
 /// What drives one input: a force, or the motion of a base with its two derivatives.
 #[derive(Debug, Clone)]
 pub struct Drive {
+    /// What was sent, before any path has delayed or scaled it: what a recorder sees.
+    pub sent: Grid,
     /// Force, displacement, or the reference of a controller.
     pub value: Grid,
     /// Its rate; for forces empty.
@@ -129,7 +131,7 @@ impl Machine {
         }
     }
 
-    /// Force of input `i` as the recorder sees it.
+    /// Force or displacement that input `i` sends: its signal, or what the controller makes of it.
     pub(crate) fn input_value(&self, i: usize, x: &[f64], now: &Now) -> f64 {
         match self.control {
             Some(c) if i == 0 => {

@@ -181,7 +181,7 @@ pub fn march(machine: &Machine, drives: &[Drive], first: &[f64], span: Span) -> 
         let time = start + kept as f64 / KEPT as f64;
         march.side = time;
         let friction = march.rates_into(&x, time, 0).0;
-        keep(&march, &x, friction, &mut run);
+        keep(&march, &x, time, friction, &mut run);
         if kept + 1 < count {
             for part in 0..inner {
                 let at = time + part as f64 * h;
@@ -193,14 +193,17 @@ pub fn march(machine: &Machine, drives: &[Drive], first: &[f64], span: Span) -> 
     run
 }
 
-fn keep(march: &March<'_>, x: &[f64], friction: f64, run: &mut Run) {
+fn keep(march: &March<'_>, x: &[f64], time: f64, friction: f64, run: &mut Run) {
     let machine = march.machine;
     let readings = machine.read(x, &march.now, &march.k[0], friction);
     for (list, value) in run.outputs.iter_mut().zip(readings) {
         list.push(value);
     }
     for (i, list) in run.inputs.iter_mut().enumerate() {
-        list.push(machine.input_value(i, x, &march.now));
+        list.push(match machine.control {
+            Some(_) if i == 0 => machine.input_value(i, x, &march.now),
+            _ => march.drives[i].sent.at(time, time),
+        });
     }
     for (list, value) in run.states.iter_mut().zip(x) {
         list.push(*value);

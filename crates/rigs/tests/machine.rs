@@ -1,9 +1,15 @@
 //! The simulator against closed forms.
+#![allow(clippy::unwrap_used)]
 
+use simgap_rigs::bench::{Bench, draw_setup};
+use simgap_rigs::effect::Effect;
+use simgap_rigs::excite::Shape;
+use simgap_rigs::families::draw_plant;
 use simgap_rigs::law::Law;
 use simgap_rigs::machine::{Dry, LawAt, Machine};
 use simgap_rigs::march::{KEPT, Span, march};
-use simgap_rigs::plant::{Node, Output, Quantity, Unit};
+use simgap_rigs::plant::{Node, Output, Place, Quantity, Unit};
+use simgap_rigs::rng::Rng;
 
 const SPAN: Span = Span {
     before: 0,
@@ -119,4 +125,38 @@ fn verify_a_law_acts_on_both_of_its_nodes() {
     let last = |i: usize| run.states[i][run.states[i].len() - 1];
     assert!((last(2) + 3.0 * last(3)).abs() < 1e-12);
     assert!(last(2).abs() > 1e-3);
+}
+
+/// A road of which half reaches the wheel, or all of it late: the recorder sees the road as it is, the sensors do not.
+#[test]
+fn verify_a_recorder_sees_what_was_sent() {
+    let mut rng = Rng::new("road");
+    let plant = draw_plant("quarter_car", &mut rng);
+    let setup = draw_setup(&plant, &[Shape::Multisine], 0.002, 500, &mut rng);
+    let bench = Bench {
+        without: plant.clone(),
+        plant,
+        setups: vec![setup],
+    };
+    let run = |kind: &'static str, name: &'static str, value: f64| {
+        let effect = Effect {
+            kind,
+            at: Place::Input(0),
+            values: vec![(name, value)],
+            phases: vec![],
+        };
+        bench.run(&bench.plant, &[effect], 0, 8).unwrap().1
+    };
+    let plain = bench.run(&bench.plant, &[], 0, 8).unwrap().1;
+    let half = run("input_gain", "gain_factor", 0.5);
+    let late = run("input_delay", "delay_s", 0.0031);
+    for (c, reading) in plain.outputs.iter().enumerate() {
+        let largest = reading.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+        for (y, half) in reading.iter().zip(&half.outputs[c]) {
+            assert!((0.5 * y - half).abs() < 1e-9 * largest, "{y} {half}");
+        }
+        assert_ne!(reading, &late.outputs[c]);
+    }
+    assert_eq!(plain.inputs, half.inputs);
+    assert_eq!(plain.inputs, late.inputs);
 }
