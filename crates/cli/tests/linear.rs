@@ -190,3 +190,28 @@ fn regress_what_is_refused() {
     let lines = cases.map(|case| bench.refused(case));
     insta::assert_snapshot!(lines.join("\n"));
 }
+
+/// The model file of the mold on two servo cylinders: heave on the oil, the leaf springs where the paper has many modes.
+#[test]
+fn verify_modes_of_the_mold_on_two_cylinders() {
+    let fixture = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../fixtures/mold-on-cylinders/model.toml"
+    );
+    let modes = json(&Bench::new().done(&["modes", fixture, "--format", "json"]));
+    let freqs: Vec<f64> = modes["modes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|mode| mode["natural_freq_hz"].as_f64())
+        .collect();
+    let near = |wanted: f64, within: f64| freqs.iter().any(|f| (f - wanted).abs() < within);
+    // k = Σ β A²/V of all chambers at mid-stroke; leakage and the valves give way a little.
+    let of_chamber = |area: f64| area * area / (5e-4 + 0.04 * area);
+    let oil = 2.0 * 1.4e9 * (of_chamber(0.02) + of_chamber(0.012));
+    let heave = (oil / 33_000.0).sqrt() / std::f64::consts::TAU;
+    assert!(near(heave, 0.05 * heave), "{freqs:?} {heave}");
+    // 1.028 h/L² √(E/ρ) of a clamped leaf spring, as the paper's cluster.
+    let leaf = 1.028 * 0.01 / 1.06_f64.powi(2) * (2.1e11_f64 / 7850.0).sqrt();
+    assert!(near(leaf, 0.01 * leaf), "{freqs:?}");
+}

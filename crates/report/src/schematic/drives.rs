@@ -159,8 +159,27 @@ mod tests {
     use super::*;
 
     fn mold() -> Model {
-        let text = include_str!("../../tests/data/mold-on-cylinders.toml");
-        Model::from_toml(text).unwrap_or_default()
+        let side = |side: &str, offset: f64| {
+            format!(
+                "[[point]]\nname = \"{side}\"\nbody = \"mold\"\noffset = {offset:?}\n\
+                 [[cylinder]]\nname = \"{side}\"\nbetween = [\"mold.{side}\", \"ground\"]\nareas = [0.02, 0.012]\n\
+                 dead_volumes = [5e-4, 5e-4]\nstroke = 0.08\nbulk_modulus = 1.4e9\n\
+                 [[valve]]\nname = \"servo {side}\"\ncylinder = \"{side}\"\nfrom = \"controller {side}\"\n\
+                 rated_flow = 3.3e-3\nrated_drop = 3.5e6\nnatural_freq = 60.0\ndamping_ratio = 0.8\nsupply = 21e6\n\
+                 [[block]]\nname = \"controller {side}\"\nnumerator = [60.0]\ndenominator = [1.0]\n\
+                 plus = [\"reference\"]\nminus = [\"mold.{side}\"]\n\
+                 [[output]]\nchannel = \"p1_{side}\"\nkind = \"pressure\"\nat = \"{side}.p1\"\n"
+            )
+        };
+        let text = format!(
+            "schema = \"simgap-model/1\"\nname = \"mold\"\n\
+             [[body]]\nname = \"mold\"\nmass = 33000.0\ninertia = 19000.0\n\
+             [[block]]\nname = \"reference\"\nnumerator = [1.0]\ndenominator = [1.0]\n\
+             [[input]]\nchannel = \"r\"\nkind = \"set_point\"\nat = \"reference\"\n{}{}",
+            side("left", -1.5),
+            side("right", 1.5)
+        );
+        Model::from_toml(&text).unwrap_or_default()
     }
 
     #[test]
