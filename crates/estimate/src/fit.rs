@@ -58,7 +58,7 @@ pub struct Fit {
 }
 
 /// Two-sided 95 % point of the normal distribution.
-const NORMAL_95: f64 = 1.959_964;
+pub const NORMAL_95: f64 = 1.959_964;
 /// λ of (4) at the start, and how often it is raised before a step is given up.
 const FIRST_DAMPING: f64 = 1e-4;
 const MOST_DAMPINGS: usize = 8;

@@ -90,7 +90,7 @@ pub use base::{Base, linearise_at};
 pub use cancel::Cancel;
 pub use candidate::Candidate;
 pub use curvature::{Coordinate, Curvature};
-pub use fit::{Fit, Interval, fit};
+pub use fit::{Fit, Interval, NORMAL_95, fit};
 pub use initial::{fit_initial_states, fit_initial_states_from, simulator_at};
 pub use joint::{JointScore, joint_scores};
 pub use layout::{Owner, Start};

@@ -1,9 +1,10 @@
 //! Values over time as pictures.
 
+use simgap_estimate::NORMAL_95;
 use simgap_report::chart::{ChartError, LineChart, Mark, Role, Series as Line};
 
 use crate::findings::{Series, Told};
-use crate::observe::{NORMAL_95, Observation, Quantity};
+use crate::observe::{Observation, Quantity};
 use crate::time::are_days;
 
 /// Charts of values at the most; those that a finding tells of come first.

@@ -21,7 +21,9 @@
 //!
 //! Reference: `schwarz1978`.
 
-use crate::observe::{Estimate, NORMAL_95};
+use simgap_estimate::NORMAL_95;
+
+use crate::observe::Estimate;
 
 /// Most segments.
 const MOST_SEGMENTS: usize = 4;

@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
+use simgap_estimate::NORMAL_95;
 
 use crate::course::{Course, course};
 use crate::factor::{Division, Explanation, Factor, divisions, factors};
-use crate::observe::{Cause, Estimate, NORMAL_95, Observation, Quantity, is_nominal};
+use crate::observe::{Cause, Estimate, Observation, Quantity, is_nominal};
 use crate::population::{mean, outlying, population};
 use crate::scope::Scope;
 use crate::time::days;
@@ -132,6 +133,14 @@ fn finding(scope: Scope, cause: &Cause, text: String) -> Finding {
     }
 }
 
+/// Whose a value is that belongs to a machine, and to levels of other factors where these explain it as well.
+fn scope_of(levels: &BTreeMap<String, Vec<String>>) -> Scope {
+    match levels.len() {
+        1 => Scope::Machine,
+        _ => Scope::Undecided,
+    }
+}
+
 fn common(cause: &Cause, all: usize, count: usize) -> Finding {
     finding(Scope::Common, cause, words::common(cause, all, count))
 }
@@ -242,11 +251,8 @@ fn of_course(
             }
         }
     }
-    let scope = match levels.len() {
-        1 => Scope::Machine,
-        _ => Scope::Undecided,
-    };
     let dates = [date(0), date(last)];
+    let scope = scope_of(&levels);
     let text = words::course(quantity, &series.machine, course, &dates, &steps, &levels);
     Some(Finding {
         parameter: Some(quantity.parameter.clone()),
@@ -286,10 +292,7 @@ fn apart(quantity: &Quantity, series: &[Series], factors: &[Factor]) -> Vec<Find
                 levels.insert(factor.name.clone(), names.collect());
             }
         }
-        let scope = match levels.len() {
-            1 => Scope::Machine,
-            _ => Scope::Undecided,
-        };
+        let scope = scope_of(&levels);
         let text = words::apart(quantity, &one.machine, *own, fleet, &levels);
         Finding {
             parameter: Some(quantity.parameter.clone()),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use simgap_effects::{Family, find};
+use simgap_estimate::NORMAL_95;
 
 use crate::FleetError;
 use crate::pattern::Fields;
@@ -10,8 +11,6 @@ use crate::row::{Role, Row};
 use crate::table::Table;
 use crate::unit::Unit;
 
-/// Two-sided 95 % point of the normal distribution.
-pub(crate) const NORMAL_95: f64 = 1.959_964;
 /// A nominal parameter of which the data say less than this share of what its prior says has no value of its own.
 const LEAST_INFORMATION: f64 = 0.25;
 

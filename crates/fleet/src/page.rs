@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use simgap_report::chart::ChartError;
 use simgap_report::markup::Html;
 use simgap_report::page::{page_of, table_of};
+use simgap_signal::median;
 
 use crate::charts::{Drawn, charts};
 use crate::findings::{Finding, Told};
 use crate::observe::{Cause, Observation};
-use crate::population::median;
 use crate::prior::FleetModel;
 use crate::scope::Scope;
 use crate::words::number;
@@ -263,14 +263,14 @@ fn machines(html: &mut Html, input: &PageInput<'_>) {
             let sound: Vec<&&Observation> = own.iter().filter(|o| o.failed.is_none()).collect();
             let with = |status: &str| sound.iter().filter(|o| o.status == status).count();
             let gap = |index: usize| {
-                let gaps: Vec<f64> = sound
+                let mut gaps: Vec<f64> = sound
                     .iter()
                     .filter_map(|o| o.gap.map(|gap| gap[index]))
                     .collect();
                 if gaps.is_empty() {
                     "–".to_owned()
                 } else {
-                    number(median(gaps))
+                    number(median(&mut gaps))
                 }
             };
             let complete = sound.iter().filter(|o| o.complete).count();

@@ -14,6 +14,8 @@
 //!
 //! Reference: `dersimonian1986`.
 
+use simgap_signal::median;
+
 use crate::observe::Estimate;
 
 /// Fewest machines that are called a fleet.
@@ -92,7 +94,7 @@ pub fn population(machines: &[Estimate]) -> Option<Population> {
         between: between.sqrt(),
         next: (between + 1.0 / total)
             .sqrt()
-            .max(median(machines.iter().map(|e| e.std).collect())),
+            .max(median_of(machines.iter().map(|e| e.std))),
     })
 }
 
@@ -108,8 +110,8 @@ pub fn outlying(values: &[Estimate]) -> Vec<usize> {
     if values.len() <= LEAST_MACHINES {
         return vec![];
     }
-    let middle = median(values.iter().map(|e| e.value).collect());
-    let deviation = median(values.iter().map(|e| (e.value - middle).abs()).collect());
+    let middle = median_of(values.iter().map(|e| e.value));
+    let deviation = median_of(values.iter().map(|e| (e.value - middle).abs()));
     let spread = MAD_TO_STD * deviation;
     let limit = OUTLYING + OF_FEW / (values.len() - 2) as f64;
     let is_apart = |e: &Estimate| (e.value - middle).abs() > limit * spread.hypot(e.std);
@@ -117,13 +119,8 @@ pub fn outlying(values: &[Estimate]) -> Vec<usize> {
     places.map(|(place, _)| place).collect()
 }
 
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => f64::NAN,
-        n if n % 2 == 1 => values[n / 2],
-        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
-    }
+fn median_of(values: impl Iterator<Item = f64>) -> f64 {
+    median(&mut values.collect::<Vec<f64>>())
 }
 
 #[cfg(test)]

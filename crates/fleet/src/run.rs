@@ -122,22 +122,19 @@ pub fn answer_alone(unit: &Unit, cancel: &Cancel) -> Result<Answered, FleetError
 #[must_use]
 pub fn resumed(units: &[Unit], out: &Path) -> Vec<Unit> {
     let table = Table::of(out);
-    let units = units.iter().map(|unit| {
-        table.clear(unit);
-        Unit {
-            known: table.known(unit),
-            ..unit.clone()
-        }
-    });
-    units.collect()
+    units.iter().map(|unit| taken_up(&table, unit)).collect()
+}
+
+fn taken_up(table: &Table, unit: &Unit) -> Unit {
+    table.clear(unit);
+    Unit {
+        known: table.known(unit),
+        ..unit.clone()
+    }
 }
 
 fn one(table: &Table, unit: &Unit, cancel: &Cancel) -> Result<Done, FleetError> {
-    table.clear(unit);
-    let unit = Unit {
-        known: table.known(unit),
-        ..unit.clone()
-    };
+    let unit = taken_up(table, unit);
     let answered = answer(&unit, cancel)?;
     let Some(bytes) = answered.bytes else {
         return Ok(Done::Known);

@@ -211,10 +211,7 @@ impl Table {
             found,
         };
         let file = read(&path).map_err(damaged)?;
-        let decode = || decoded(&file).map_err(|error| error.to_string());
-        simgap_record::without_panic(decode)
-            .unwrap_or_else(|| Err("its bytes contradict each other".to_owned()))
-            .map_err(damaged)
+        guarded(|| decoded(&file)).map_err(damaged)
     }
 }
 
@@ -224,9 +221,15 @@ fn read(path: &Path) -> Result<SerializedFileReader<Bytes>, String> {
         return Err(format!("longer than {MOST_BYTES} bytes"));
     }
     let bytes = Bytes::from(std::fs::read(path).map_err(|error| error.kind().to_string())?);
-    let open = || SerializedFileReader::new(bytes).map_err(|error| error.to_string());
-    simgap_record::without_panic(open)
-        .unwrap_or_else(|| Err("its bytes contradict each other".to_owned()))
+    guarded(|| SerializedFileReader::new(bytes))
+}
+
+/// What another crate's reader finds, or why it does not; a panic of its is no end of ours.
+fn guarded<T>(read: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
+    match simgap_record::without_panic(read) {
+        Some(found) => found.map_err(|error| error.to_string()),
+        None => Err("its bytes contradict each other".to_owned()),
+    }
 }
 
 fn decoded(file: &SerializedFileReader<Bytes>) -> Result<Vec<Row>, ParquetError> {

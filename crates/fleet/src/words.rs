@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use simgap_estimate::NORMAL_95;
+
 use crate::course::Course;
 use crate::factor::Explanation;
-use crate::observe::{Cause, Estimate, NORMAL_95, Quantity};
+use crate::observe::{Cause, Estimate, Quantity};
 use crate::population::Population;
 use crate::scope::Scope;
 

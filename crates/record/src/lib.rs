@@ -89,6 +89,7 @@ mod new_file;
 mod note;
 mod open;
 mod overload;
+mod panics;
 mod place;
 mod quality;
 mod raw;
@@ -114,19 +115,12 @@ pub use channel::{Channel, Conversion};
 pub use csv_read::{parse_csv, read_csv, read_csv_channels, read_csv_some};
 pub use error::{Place, RecordError};
 pub use faults::{FormatFault, MapFault, MendFault, SelectionFault, TextFault};
-#[cfg(any(
-    feature = "arrow",
-    feature = "matlab73",
-    feature = "mdf",
-    feature = "parquet",
-    feature = "xlsx"
-))]
-pub use foreign::without_panic;
 pub use format::Format;
 pub use limits::{MAX_FILE_BYTES, MAX_LINE_BYTES, MAX_ROWS, MIN_ROWS};
 pub use map::{ChannelMap, MapEntry};
 pub use note::Note;
 pub use open::{parse_file, read_file};
+pub use panics::without_panic;
 pub use quality::{Defect, Edge, QualityFinding, quality};
 pub use record::Record;
 pub use same::{AuditFinding, AuditTopic, audit, found_within};

@@ -61,7 +61,12 @@ pub(crate) fn positive(what: &'static str, value: f64) -> Result<(), SignalError
 }
 
 /// Median by selection; `scratch` is reordered. An empty slice gives NaN.
-pub(crate) fn median(scratch: &mut [f64]) -> f64 {
+///
+/// ```
+/// assert_eq!(simgap_signal::median(&mut [5.0, 1.0, 2.0, 4.0]), 3.0);
+/// ```
+#[must_use]
+pub fn median(scratch: &mut [f64]) -> f64 {
     let n = scratch.len();
     if n == 0 {
         return f64::NAN;

@@ -51,6 +51,7 @@ pub mod trend;
 pub mod welch;
 pub mod window;
 
+pub use check::median;
 pub use error::SignalError;
 pub use rustfft::num_complex::Complex64;
 pub use trend::Trend;
