@@ -26,7 +26,7 @@ use simgap_model::Location;
 use crate::candidate_model::{NominalPrior, is_nominal};
 
 /// Standard deviation of the prior on an initial state, in units of its typical size.
-const STATE_STD: f64 = 10.0;
+pub(crate) const STATE_STD: f64 = 10.0;
 
 /// ln Z of (2); minus infinity where an effect has vanished, since the set is then a smaller one, and
 /// where its prior has no support.

@@ -17,15 +17,13 @@ use simgap_effects::Placed;
 use simgap_estimate::{Coordinate, Fit, Owner, Start};
 
 use crate::candidate_model::is_nominal;
-
-/// Precision of the prior on a coordinate of which the data may tell nothing, in units of its scale.
-const FREE: f64 = 1e-2;
+use crate::marginal_likelihood::STATE_STD;
 
 /// The estimate of a fit with some nominal parameters at their nominal values and the others where they go best with that.
 pub(crate) fn compensated(fit: &Fit, returns: impl Fn(&Placed) -> bool) -> Start {
     let mut start = fit.estimate.clone();
-    let of = |coordinate: &Coordinate| parameter(&fit.estimate, coordinate.owner);
-    let is_back = |c: &Coordinate| of(c).is_some_and(|(placed, _)| returns(placed));
+    let of = |c: &Coordinate| parameter(&fit.estimate, c.owner);
+    let is_back = |c: &Coordinate| of(c).is_some_and(&returns);
     let used = fit.curvature.coordinates.iter().enumerate();
     let used: Vec<(usize, &Coordinate)> = used.filter(|(_, c)| !c.is_held).collect();
     let (back, free): (Vec<_>, Vec<_>) = used.into_iter().partition(|(_, c)| is_back(c));
@@ -45,7 +43,8 @@ pub(crate) fn compensated(fit: &Fit, returns: impl Fn(&Placed) -> bool) -> Start
         let of_data = hessian[(at, beside)] * unit(one) * unit(other);
         let of_prior = match one.prior_std.is_finite() {
             true => (unit(one) * one.scale / one.prior_std).powi(2),
-            false => FREE,
+            // Of a coordinate without a prior the data may tell nothing.
+            false => STATE_STD.powi(-2),
         };
         of_data + if i == j { of_prior } else { 0.0 }
     });
@@ -56,16 +55,15 @@ pub(crate) fn compensated(fit: &Fit, returns: impl Fn(&Placed) -> bool) -> Start
             .map(|&(beside, c)| hessian[(at, beside)] * unit(one) * unit(c) * moved(c))
             .sum::<f64>()
     });
-    let step = matrix.llt(Side::Lower).ok().map(|llt| llt.solve(&right));
-    for (i, (_, coordinate)) in free.iter().enumerate() {
-        let Some(step) = step.as_ref().map(|step| step[(i, 0)]) else {
-            continue;
-        };
-        let value = match is_log(coordinate) {
-            true => coordinate.value * step.exp(),
-            false => coordinate.value + step * coordinate.scale,
-        };
-        set(&mut start, coordinate.owner, value);
+    if let Ok(factors) = matrix.llt(Side::Lower) {
+        let step = factors.solve(&right);
+        for (i, (_, coordinate)) in free.iter().enumerate() {
+            let value = match is_log(coordinate) {
+                true => coordinate.value * step[(i, 0)].exp(),
+                false => coordinate.value + step[(i, 0)] * coordinate.scale,
+            };
+            set(&mut start, coordinate.owner, value);
+        }
     }
     for (_, coordinate) in &back {
         set(&mut start, coordinate.owner, 1.0);
@@ -74,28 +72,24 @@ pub(crate) fn compensated(fit: &Fit, returns: impl Fn(&Placed) -> bool) -> Start
 }
 
 /// The nominal parameter that a coordinate is a value of.
-fn parameter(start: &Start, owner: Owner) -> Option<(&Placed, usize)> {
-    let (placed, value) = match owner {
-        Owner::Effect(effect, value) => (start.effects.get(effect)?, value),
-        Owner::Nominal(nominal, value) => (start.nominal.get(nominal)?, value),
-        Owner::State => return None,
+fn parameter(start: &Start, owner: Owner) -> Option<&Placed> {
+    let placed = match owner {
+        Owner::Effect(effect, _) => start.effects.get(effect),
+        Owner::Nominal(nominal, _) => start.nominal.get(nominal),
+        Owner::State => None,
     };
-    is_nominal(placed).then_some((placed, value))
+    placed.filter(|placed| is_nominal(placed))
 }
 
 /// Gives a nominal parameter a value; others stay.
 fn set(start: &mut Start, owner: Owner, value: f64) {
-    if !value.is_finite() || parameter(start, owner).is_none() {
-        return;
-    }
-    let placed = match owner {
-        Owner::Effect(effect, k) => start.effects.get_mut(effect).zip(Some(k)),
-        Owner::Nominal(nominal, k) => start.nominal.get_mut(nominal).zip(Some(k)),
-        Owner::State => None,
+    let (placed, k) = match owner {
+        Owner::Effect(effect, k) => (start.effects.get_mut(effect), k),
+        Owner::Nominal(nominal, k) => (start.nominal.get_mut(nominal), k),
+        Owner::State => return,
     };
-    if let Some((placed, k)) = placed
-        && let Some(own) = placed.values.get_mut(k)
-    {
+    let placed = placed.filter(|placed| is_nominal(placed) && value.is_finite());
+    if let Some(own) = placed.and_then(|placed| placed.values.get_mut(k)) {
         *own = value;
     }
 }

@@ -64,6 +64,8 @@ impl Search<'_> {
             }
         }
         found.extend(larger);
+        // The parameters alone have been proposed before.
+        found.retain(|set| !set.effects().is_empty());
         Ok(self.with_parameters_named(found))
     }
 
