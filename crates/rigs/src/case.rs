@@ -8,7 +8,7 @@ use crate::chain::Noise;
 use crate::draft::Draft;
 use crate::effect::Effect;
 use crate::families::{FAMILIES, draw_plant};
-use crate::plan::{Filter, Role, Wanted, wanted};
+use crate::plan::{Filter, Role, Wanted, wanted, wanted_instead};
 use crate::plant::Plant;
 use crate::rng::Rng;
 use crate::truth::{Named, Truth, TruthNoise};
@@ -50,23 +50,29 @@ pub enum RigError {
     },
 }
 
+/// Kinds that are tried in the place of one that no machine shows (two of a pair may hide each other), itself first.
+const OTHERS: usize = 8;
+
 /// Draws a case.
 ///
 /// # Errors
 /// [`RigError`] where no machine shows what is wanted.
 pub fn draw_case(seed: u64, number: usize, filter: &Filter) -> Result<Case, RigError> {
-    let wanted = wanted(seed, number, filter);
-    for attempt in 0..TRIES {
-        let label = format!("rigs/1/{seed}/{number}/{}/{attempt}", wanted.role.name());
-        let mut rng = Rng::new(&label);
-        if let Some(case) = attempt_case(&wanted, number, &mut rng) {
-            return Ok(case);
+    let others = if filter.kind.is_some() { 1 } else { OTHERS };
+    for instead in 0..others {
+        let wanted = wanted_instead(seed, number, filter, instead);
+        for attempt in 0..TRIES {
+            let label = format!("rigs/1/{seed}/{number}/{}/{attempt}", wanted.role.name());
+            let mut rng = Rng::new(&label);
+            if let Some(case) = attempt_case(&wanted, number, &mut rng) {
+                return Ok(case);
+            }
         }
     }
     Err(RigError::NoMachine {
         seed,
         number,
-        kinds: wanted.kinds.join(" and "),
+        kinds: wanted(seed, number, filter).kinds.join(" and "),
         tries: TRIES,
     })
 }

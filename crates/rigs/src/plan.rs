@@ -103,6 +103,12 @@ fn in_turn(list: &[&'static str], label: &str, seed: u64, index: usize) -> &'sta
 /// What case `number` (from 1 on) of a seed is to be.
 #[must_use]
 pub fn wanted(seed: u64, number: usize, filter: &Filter) -> Wanted {
+    wanted_instead(seed, number, filter, 0)
+}
+
+/// The same with another last kind, the `instead`-th after the one whose turn it is: for a case that no machine shows.
+#[must_use]
+pub fn wanted_instead(seed: u64, number: usize, filter: &Filter, instead: usize) -> Wanted {
     if let Some(kind) = filter.kind {
         let role = match kind.starts_with("foreign_") {
             true => Role::Foreign,
@@ -125,13 +131,13 @@ pub fn wanted(seed: u64, number: usize, filter: &Filter) -> Wanted {
         }
     };
     let kinds = match role {
-        Role::Single => vec![in_turn(&EFFECTS, "single", seed, index)],
+        Role::Single => vec![in_turn(&EFFECTS, "single", seed, index + instead)],
         Role::Pair => vec![
             in_turn(&EFFECTS, "pair/a", seed, index),
-            in_turn(&EFFECTS, "pair/b", seed, index),
+            in_turn(&EFFECTS, "pair/b", seed, index + instead),
         ],
-        Role::Foreign => vec![in_turn(&FOREIGN, "foreign", seed, index)],
-        Role::Slip => vec![in_turn(&SLIPS, "slip", seed, index)],
+        Role::Foreign => vec![in_turn(&FOREIGN, "foreign", seed, index + instead)],
+        Role::Slip => vec![in_turn(&SLIPS, "slip", seed, index + instead)],
         Role::Clean | Role::Parameters => vec![],
     };
     Wanted { role, kinds }
