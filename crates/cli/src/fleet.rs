@@ -1,7 +1,6 @@
 //! `simgap fleet`.
 
 use std::num::NonZeroUsize;
-use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use simgap_diagnose::Cancel;
@@ -23,15 +22,10 @@ pub(crate) fn run_fleet(args: &FleetArgs) -> Result<(), CliError> {
     {
         bar.set_style(style);
     }
-    let bar = Mutex::new(bar);
     let counts = run(&units, &args.out, jobs, &Cancel::default(), &|_, _| {
-        if let Ok(bar) = bar.lock() {
-            bar.inc(1);
-        }
+        bar.inc(1);
     });
-    if let Ok(bar) = bar.lock() {
-        bar.finish_and_clear();
-    }
+    bar.finish_and_clear();
     let counts = counts?;
     let fleet = simgap_fleet::report(&plan, &units, &args.out)?;
     match args.format {

@@ -161,61 +161,13 @@ fn with_values(model: &Model, values: Vec<NominalOfFleet>) -> (Model, Vec<Nomina
         let Action::Model(change) = placed.action() else {
             continue;
         };
-        if state(&mut changed, &value.kind, &at, value.uncertainty) {
+        let is_stated = effect
+            .nominal_quantity()
+            .is_some_and(|quantity| changed.state_uncertainty(quantity, &at, value.uncertainty));
+        if is_stated {
             change(&mut changed, &at);
             written.push(value);
         }
     }
     (changed, written)
-}
-
-/// States the uncertainty in the parts that make up a value; `false` where the model file has no place for it.
-///
-/// Errors of several parts are independent, so that each of n equal ones may be off by √n times as much as their sum:
-///
-/// ```text
-/// u_i = s |Σ k_i| / sqrt(Σ k_i²)
-/// ```
-fn state(model: &mut Model, kind: &str, at: &Location, uncertainty: f64) -> bool {
-    let is_there = |between: &[String; 2]| match at {
-        Location::Between([a, b]) => between.contains(a) && between.contains(b) && a != b,
-        _ => false,
-    };
-    let mut parts: Vec<(f64, &mut Option<f64>)> = match (kind, at) {
-        ("mass_error", Location::Mass(name)) => {
-            let masses = model.masses.iter_mut().filter(|mass| mass.name == *name);
-            masses
-                .map(|mass| (mass.value, &mut mass.uncertainty))
-                .collect()
-        }
-        ("stiffness_error", _) => {
-            let springs = model
-                .springs
-                .iter_mut()
-                .filter(|one| is_there(&one.between));
-            springs
-                .map(|one| (one.stiffness, &mut one.uncertainty))
-                .collect()
-        }
-        ("damping_error", _) => {
-            let dampers = model
-                .dampers
-                .iter_mut()
-                .filter(|one| is_there(&one.between));
-            dampers
-                .map(|one| (one.damping, &mut one.uncertainty))
-                .collect()
-        }
-        _ => return false,
-    };
-    let sum: f64 = parts.iter().map(|(value, _)| value).sum();
-    let squares: f64 = parts.iter().map(|(value, _)| value * value).sum();
-    if parts.is_empty() || squares <= 0.0 || sum == 0.0 {
-        return false;
-    }
-    let each = uncertainty * sum.abs() / squares.sqrt();
-    for (_, stated) in &mut parts {
-        **stated = Some(each.min(LARGEST_UNCERTAINTY));
-    }
-    true
 }

@@ -22,6 +22,45 @@ pub enum NominalQuantity {
     OutputGain,
 }
 
+/// Value and stated uncertainty of each part of a kind at a place; with `iter_mut` and `&mut` the latter to be changed.
+macro_rules! nominal_parts {
+    ($model:expr, $quantity:expr, $at:expr, $iter:ident, $($reference:tt)*) => {{
+        use NominalQuantity as Q;
+        let parts: Vec<(f64, _)> = match ($quantity, $at) {
+            (Q::Mass, Location::Mass(name)) => {
+                let here = $model.masses.$iter().filter(|mass| &mass.name == name);
+                here.map(|mass| (mass.value, $($reference)* mass.uncertainty)).collect()
+            }
+            (Q::Stiffness, Location::Between(pair)) => {
+                let here = $model.springs.$iter().filter(|one| same_pair(&one.between, pair));
+                here.map(|one| (one.stiffness, $($reference)* one.uncertainty)).collect()
+            }
+            (Q::Damping, Location::Between(pair)) => {
+                let here = $model.dampers.$iter().filter(|one| same_pair(&one.between, pair));
+                here.map(|one| (one.damping, $($reference)* one.uncertainty)).collect()
+            }
+            (Q::Pendulum, Location::Mass(name)) => {
+                let here = $model.pendulums.$iter().filter(|arm| &arm.at == name);
+                here.map(|arm| (arm.value, $($reference)* arm.uncertainty)).collect()
+            }
+            (Q::Load, Location::Mass(name)) => {
+                let here = $model.loads.$iter().filter(|load| &load.at == name);
+                here.map(|load| (load.value, $($reference)* load.uncertainty)).collect()
+            }
+            (Q::InputGain, Location::Input(channel)) => {
+                let here = $model.inputs.$iter().filter(|one| &one.channel == channel);
+                here.map(|one| (1.0, $($reference)* one.uncertainty)).collect()
+            }
+            (Q::OutputGain, Location::Channel(channel)) => {
+                let here = $model.outputs.$iter().filter(|one| &one.channel == channel);
+                here.map(|one| (1.0, $($reference)* one.uncertainty)).collect()
+            }
+            _ => vec![],
+        };
+        parts
+    }};
+}
+
 impl Model {
     /// Relative standard deviation of a nominal value: of the sum of its parts, whose errors are
     /// independent of each other.
@@ -59,7 +98,7 @@ impl Model {
     #[must_use]
     pub fn stated_uncertainty(&self, quantity: NominalQuantity, at: &Location) -> f64 {
         let (mut sum, mut variance) = (0.0, 0.0_f64);
-        for (value, uncertainty) in self.nominal_parts(quantity, at) {
+        for (value, uncertainty) in nominal_parts!(self, quantity, at, iter,) {
             let deviation = value * uncertainty.unwrap_or(DEFAULT_UNCERTAINTY);
             sum += value;
             variance += deviation * deviation;
@@ -70,44 +109,32 @@ impl Model {
         (variance.sqrt() / f64::abs(sum)).min(LARGEST_UNCERTAINTY)
     }
 
-    /// Value and stated uncertainty of each part of a kind at a place.
-    fn nominal_parts(&self, quantity: NominalQuantity, at: &Location) -> Vec<(f64, Option<f64>)> {
-        use NominalQuantity as Q;
-        match (quantity, at) {
-            (Q::Mass, Location::Mass(name)) => {
-                let here = self.masses.iter().filter(|mass| &mass.name == name);
-                here.map(|mass| (mass.value, mass.uncertainty)).collect()
-            }
-            (Q::Stiffness, Location::Between(pair)) => {
-                let here = self.springs.iter();
-                here.filter(|spring| same_pair(&spring.between, pair))
-                    .map(|spring| (spring.stiffness, spring.uncertainty))
-                    .collect()
-            }
-            (Q::Damping, Location::Between(pair)) => {
-                let here = self.dampers.iter();
-                here.filter(|damper| same_pair(&damper.between, pair))
-                    .map(|damper| (damper.damping, damper.uncertainty))
-                    .collect()
-            }
-            (Q::Pendulum, Location::Mass(name)) => {
-                let here = self.pendulums.iter().filter(|arm| &arm.at == name);
-                here.map(|arm| (arm.value, arm.uncertainty)).collect()
-            }
-            (Q::Load, Location::Mass(name)) => {
-                let here = self.loads.iter().filter(|load| &load.at == name);
-                here.map(|load| (load.value, load.uncertainty)).collect()
-            }
-            (Q::InputGain, Location::Input(channel)) => {
-                let here = self.inputs.iter().filter(|one| &one.channel == channel);
-                here.map(|input| (1.0, input.uncertainty)).collect()
-            }
-            (Q::OutputGain, Location::Channel(channel)) => {
-                let here = self.outputs.iter().filter(|one| &one.channel == channel);
-                here.map(|output| (1.0, output.uncertainty)).collect()
-            }
-            _ => vec![],
+    /// States the uncertainty of a nominal value in the parts that make it up: each of n equal ones may be off by √n times
+    /// as much as their sum, for their errors are independent.
+    ///
+    /// ```text
+    /// uᵢ = s |Σ kᵢ| / sqrt(Σ kᵢ²)
+    /// ```
+    ///
+    /// with s the relative standard deviation of the sum, [`Model::stated_uncertainty`] afterwards, up to 10. `false`, and
+    /// nothing stated, where the model has no such part, or parts that cancel.
+    pub fn state_uncertainty(
+        &mut self,
+        quantity: NominalQuantity,
+        at: &Location,
+        uncertainty: f64,
+    ) -> bool {
+        let parts = nominal_parts!(self, quantity, at, iter_mut, &mut);
+        let sum: f64 = parts.iter().map(|(value, _)| value).sum();
+        let squares: f64 = parts.iter().map(|(value, _)| value * value).sum();
+        if sum == 0.0 || squares <= 0.0 {
+            return false;
         }
+        let each = uncertainty * sum.abs() / squares.sqrt();
+        for (_, stated) in parts {
+            *stated = Some(each.min(LARGEST_UNCERTAINTY));
+        }
+        true
     }
 }
 
@@ -172,5 +199,27 @@ mod tests {
             let found = stated(quantity, at);
             assert!((found - expected).abs() < ROUNDING, "{quantity:?}: {found}");
         }
+    }
+
+    #[test]
+    fn verify_what_is_stated_is_read_back() {
+        let pair = Location::Between(["ground", "a"].map(String::from));
+        let mut model = Model::from_toml(PARTS).unwrap();
+        for (quantity, at) in [
+            (NominalQuantity::Stiffness, pair.clone()),
+            (NominalQuantity::Damping, pair.clone()),
+            (NominalQuantity::Mass, Location::Mass("a".into())),
+            (NominalQuantity::InputGain, Location::Input("u".into())),
+        ] {
+            assert!(model.state_uncertainty(quantity, &at, 0.13));
+            let read = model.stated_uncertainty(quantity, &at);
+            assert!((read - 0.13).abs() < 1e-15, "{quantity:?}: {read}");
+        }
+        // Parts that cancel, and none.
+        let before = model.clone();
+        let mass = Location::Mass("a".into());
+        assert!(!model.state_uncertainty(NominalQuantity::Load, &mass, 0.13));
+        assert!(!model.state_uncertainty(NominalQuantity::Mass, &pair, 0.13));
+        assert_eq!(model, before);
     }
 }
