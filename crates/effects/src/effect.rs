@@ -229,10 +229,11 @@ pub trait Effect: Sync + Send {
         None
     }
 
-    /// Whether the prior of the kind has any density at these values, at a place of these sizes.
+    /// Whether the prior of the kind has any density at these values, at a place of these sizes. What has a clock swings:
+    /// the longest record holds a whole period of it; what does not is off, or drifts.
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
-        let _ = (values, scale);
-        true
+        let clock = self.clock();
+        clock.is_none_or(|clock| values[clock.frequency] * scale.duration_s >= 1.0)
     }
 
     /// Whether it is one of the terms that the loss of a machine is usually made of: a force against the velocity, in

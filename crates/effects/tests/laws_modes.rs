@@ -227,13 +227,13 @@ fn verify_flexible_support_starts_at_lines() {
     }
 }
 
-/// What swings by a thousandth of a period in a record is a stiffness that is off.
+/// What swings by less than a period in a record is a stiffness that is off, or drifts.
 #[test]
 fn verify_a_stiffness_that_hardly_moves_does_not_swing() {
     let keeps = |periods: f64| {
         let freq_hz = periods / scale().duration_s;
         effect("time_varying_stiffness").has_support(&[100.0, freq_hz, 1.0], &scale())
     };
-    assert!(keeps(20.0) && keeps(0.1));
-    assert!(!keeps(1e-3));
+    assert!(keeps(20.0) && keeps(1.01));
+    assert!(!keeps(0.9));
 }

@@ -2,9 +2,6 @@
 
 use crate::effect::SiteScale;
 
-/// Part of a period in what is searched of a record below which nothing swings: it is off, or drifts.
-const LEAST_SWING: f64 = 0.01;
-
 /// A motion at one frequency times a carrier at another leaves lines at their sum and difference: the lines that
 /// are left, and these with the two strongest of the motion added and taken away, Hz. A motion of many frequencies leaves
 /// no line; what is left times the motion has one at the carrier. None is nearer to another than half of what a record
@@ -26,9 +23,4 @@ pub(super) fn carriers_hz(scale: &SiteScale) -> Vec<f64> {
         }
     }
     found
-}
-
-/// Whether a carrier of this frequency swings within a record.
-pub(super) fn swings(frequency_hz: f64, scale: &SiteScale) -> bool {
-    frequency_hz * scale.duration_s >= LEAST_SWING
 }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
-use super::carrier::{carriers_hz, swings};
+use super::carrier::carriers_hz;
 use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// A force in proportion to the velocity times a carrier: a damping that swings in time, a brake or a drive whose
@@ -92,10 +92,6 @@ impl Effect for SynchronousForce {
             omega: TAU * values[1],
             phase: values[2],
         }))
-    }
-
-    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
-        swings(values[1], scale)
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::carrier::{carriers_hz, swings};
+use super::carrier::carriers_hz;
 use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
 use crate::signal_map::{Sampled, SignalMap};
 
@@ -105,10 +105,6 @@ impl Effect for SynchronousTone {
             omega: TAU * values[1],
             phase: values[2],
         }))
-    }
-
-    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
-        swings(values[1], scale)
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {

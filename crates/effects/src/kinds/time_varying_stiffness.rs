@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use simgap_integrate::exact::{ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
-use super::carrier::{carriers_hz, swings};
+use super::carrier::carriers_hz;
 use crate::effect::{Action, Clock, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// A spring whose stiffness swings in time: a gear mesh, a rotating shaft that is not round.
@@ -115,10 +115,6 @@ impl Effect for TimeVaryingStiffness {
             omega: TAU * values[1],
             phase: values[2],
         }))
-    }
-
-    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
-        swings(values[1], scale)
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
