@@ -73,6 +73,15 @@ fn verify_the_thresholds_are_those_of_the_code() {
         }
     }
     assert!(rows >= 30, "{rows} rows");
+    let (decide, _) = page.split_once("\n## ").unwrap();
+    let deciding = decide
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+        .count();
+    assert!(
+        (10..=25).contains(&deciding),
+        "{deciding} numbers decide, 25 at the most"
+    );
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 

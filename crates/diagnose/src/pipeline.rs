@@ -11,8 +11,10 @@ use std::borrow::Borrow;
 use simgap_effects::{Placed, catalogue};
 use simgap_estimate::{Cancel, Fit, FitOptions, Problem, Start, fit, fit_initial_states};
 use simgap_inference::noise_model::whitening;
-use simgap_inference::{Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, recalibrate};
-use simgap_model::Model;
+use simgap_inference::{
+    Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, read_inputs, recalibrate,
+};
+use simgap_model::{BetweenSamples, Model};
 use simgap_record::{Defect, QualityFinding, Record};
 
 use crate::check::Check;
@@ -90,8 +92,15 @@ pub fn diagnose<R: Borrow<Record>>(
     progress: Progress<'_>,
 ) -> Result<Outcome, DiagnoseError> {
     known_kinds(request.withheld)?;
-    let data = divide(request.model, request.train, request.check)?;
+    let mut data = divide(request.model, request.train, request.check)?;
     progress("nominal model");
+    let model = read_inputs(request.model, &data.train, &request.cancel)?;
+    data.notes.extend(read_otherwise(request.model, &model));
+    let request = &Request {
+        model: &model,
+        cancel: request.cancel.clone(),
+        ..*request
+    };
     let mut prepared = prepare(request, &data)?;
 
     let options = FitOptions::white(request.model.outputs.len());
@@ -277,6 +286,25 @@ fn finish<R: Borrow<Record>>(
             notes,
         },
     })
+}
+
+/// Tells of the inputs that are read otherwise than the model file says.
+fn read_otherwise(given: &Model, read: &Model) -> Vec<String> {
+    let inputs = given.inputs.iter().zip(&read.inputs);
+    let differ = inputs.filter(|(given, read)| given.between_samples != read.between_samples);
+    let told = differ.map(|(_, input)| {
+        let how = match input.between_samples() {
+            BetweenSamples::Smooth => "a smooth curve through the samples",
+            BetweenSamples::Linear => "straight lines between the samples (first-order hold)",
+            BetweenSamples::Held => "held from sample to sample (zero-order hold)",
+        };
+        format!(
+            "input \"{}\" goes in jumps and is read as {how}: so the model leaves least of the training records. State \
+             `between_samples` in its [[input]] to read it otherwise",
+            input.channel
+        )
+    });
+    told.collect()
 }
 
 fn quality_notes<R: Borrow<Record>>(request: &Request<'_, R>, data: &Data) -> Vec<String> {

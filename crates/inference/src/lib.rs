@@ -1,6 +1,7 @@
 //! Which sets of effects explain records: proposals, one log marginal likelihood, one posterior.
 //!
 //! ```text
+//! inputs, records         -> what inputs do between samples             between_samples
 //! nominal model, records -> noise model (once)                         noise_model
 //! catalogue x places     -> sets and their prior                       model_space
 //! proposals of sets      -> fits; a search with budgets                proposals, search, stretches
@@ -12,6 +13,7 @@
 //! No stage calls an earlier one. The search may miss a set; it does not judge one. Nothing here knows an effect by name
 //! or what is reported of it.
 
+mod between_samples;
 mod candidate_model;
 mod coincidence;
 mod marginal_likelihood;
@@ -23,6 +25,7 @@ mod proposals;
 mod search;
 mod stretches;
 
+pub use between_samples::read_inputs;
 pub use candidate_model::{CandidateModel, add, is_nominal, name, rank};
 pub use coincidence::Coincidence;
 pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterior};

@@ -1,7 +1,7 @@
 //! The checks that make a list of parts a model.
 
 use crate::refuse::{check_gain, check_uncertainty, finite, is_one_of, item, node_name, unique};
-use crate::{InputKind, Location, Model, ModelError, Node, OutputKind};
+use crate::{BetweenSamples, InputKind, Location, Model, ModelError, Node, OutputKind};
 
 impl Model {
     /// Checks that the parts make a model; [`Model::from_toml`] has done so.
@@ -105,6 +105,18 @@ impl Model {
             let place = item("input", &input.channel);
             check_gain(&place, input.gain)?;
             check_uncertainty(&place, input.uncertainty)?;
+            if !input.may_jump() && input.between_samples() != BetweenSamples::Smooth {
+                let found = match input.between_samples() {
+                    BetweenSamples::Held => "held",
+                    _ => "linear",
+                };
+                return Err(ModelError::Shape {
+                    place,
+                    found: format!("between_samples = \"{found}\""),
+                    needed: "\"smooth\" for a displacement: a node that jumps has no velocity"
+                        .into(),
+                });
+            }
             match input.kind {
                 InputKind::Force => self.check_mass(&input.at, &place)?,
                 InputKind::Displacement => node_name(&place, &input.at)?,

@@ -76,8 +76,8 @@ pub use modes::{
 pub use node::{BodyPoint, Node};
 pub use parameter::Parameter;
 pub use parts::{
-    DEFAULT_UNCERTAINTY, Damper, EffectEntry, GROUND, Input, InputKind, Load, Location, Mass,
-    Output, OutputKind, Pendulum, Spring,
+    BetweenSamples, DEFAULT_UNCERTAINTY, Damper, EffectEntry, GROUND, Input, InputKind, Load,
+    Location, Mass, Output, OutputKind, Pendulum, Spring,
 };
 pub use sensitivity::{PoleSensitivity, pole_sensitivities, receptance_sensitivity};
 pub use uncertainty::NominalQuantity;

@@ -82,6 +82,36 @@ pub struct Input {
     /// How well the gain is known: relative standard deviation; [`DEFAULT_UNCERTAINTY`] where none is stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<f64>,
+    /// What it does between the samples; where nothing is stated a diagnosis decides by the records, and a simulation
+    /// reads a smooth curve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_samples: Option<BetweenSamples>,
+}
+
+impl Input {
+    /// Whether it may jump, or bend: what moves a node may not.
+    #[must_use]
+    pub fn may_jump(&self) -> bool {
+        self.kind != InputKind::Displacement
+    }
+
+    /// What it does between the samples, as stated or smooth.
+    #[must_use]
+    pub fn between_samples(&self) -> BetweenSamples {
+        self.between_samples.unwrap_or(BetweenSamples::Smooth)
+    }
+}
+
+/// What an input does between its samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BetweenSamples {
+    /// It follows a smooth curve through the samples, as what was measured does.
+    Smooth,
+    /// It goes in straight lines from sample to sample (first-order hold).
+    Linear,
+    /// It keeps the value of a sample until the next one, as what a converter puts out does (zero-order hold).
+    Held,
 }
 
 /// What an output channel measures.

@@ -238,6 +238,7 @@ impl OneDof {
                 at: LEAF_END.to_owned(),
                 gain: None,
                 uncertainty: None,
+                between_samples: None,
             }));
         }
         let model = Model {
@@ -276,6 +277,7 @@ pub(crate) fn pressure_input() -> Input {
         at: "mold".to_owned(),
         gain: None,
         uncertainty: None,
+        between_samples: None,
     }
 }
 

@@ -280,6 +280,7 @@ impl ServoMold {
                 at: at.to_owned(),
                 gain: None,
                 uncertainty: None,
+                between_samples: None,
             });
         }
         let mut output = |channel: String, kind: OutputKind, at: String| {

@@ -1,7 +1,7 @@
 //! What drives a simulator in a run.
 
 use simgap_effects::Sampled;
-use simgap_model::{InputKind, Node};
+use simgap_model::{BetweenSamples, Input, InputKind, Node};
 
 use crate::drive::{Coupling, Drive, DriveKey, derivative, straighten};
 use crate::{Run, SimulateError, Simulator};
@@ -11,6 +11,12 @@ impl Simulator {
         Ok(DriveKey {
             run,
             input_effects: &self.input_effects,
+            between_samples: self
+                .model
+                .inputs
+                .iter()
+                .map(Input::between_samples)
+                .collect(),
             mapped_inputs: self.input_maps.iter().map(|(input, _)| *input).collect(),
             input_terms: {
                 let inputs = 0..self.model.inputs.len();
@@ -51,13 +57,17 @@ impl Simulator {
             .filter(|&i| self.model.inputs[i].kind == InputKind::Displacement)
             .collect();
         drive.base_count = base_inputs.len();
-        for (i, signal) in inputs.iter().enumerate() {
-            for (dof, weight) in self.model.input_terms(i)? {
-                for (sample, value) in signal.iter().enumerate() {
-                    drive.dof_force[sample * n + dof] += weight * value;
+        let add = |drive: &mut Drive, wanted: BetweenSamples| -> Result<(), SimulateError> {
+            let read = self.model.inputs.iter().map(Input::between_samples);
+            let inputs = inputs.iter().zip(read).enumerate();
+            for (i, (signal, _)) in inputs.filter(|(_, (_, read))| *read == wanted) {
+                for (dof, weight) in self.model.input_terms(i)? {
+                    drive.add(wanted, (dof, n), (signal, weight), run.time_step_s);
                 }
             }
-        }
+            Ok(())
+        };
+        add(&mut drive, BetweenSamples::Smooth)?;
         let motion: Vec<[Vec<f64>; 3]> = base_inputs
             .iter()
             .map(|&i| {
@@ -82,6 +92,8 @@ impl Simulator {
             }
         }
         drive.beyond = straighten(&mut drive.dof_force, n);
+        add(&mut drive, BetweenSamples::Linear)?;
+        add(&mut drive, BetweenSamples::Held)?;
         Ok(drive)
     }
 

@@ -71,7 +71,7 @@ impl Simulator {
         mut predicted: Vec<Vec<f64>>,
         keep: impl Fn(&dyn SignalMap) -> bool,
     ) -> Vec<Vec<f64>> {
-        self.accelerate(ready, &mut predicted);
+        self.add_beyond(ready, &mut predicted);
         for (output, map) in self
             .output_maps
             .iter()
@@ -94,23 +94,30 @@ impl Simulator {
         !(run.mended.is_resampled && map.lives_in_single_samples())
     }
 
-    /// Adds what the force at a sample accelerates beyond that of the straight lines, `gᵀ Δf` with g the output of
-    /// unit forces.
-    fn accelerate(&self, ready: &Prepared, predicted: &mut [Vec<f64>]) {
-        let plans = predicted.iter_mut().zip(&self.outputs);
-        for (signal, plan) in plans.filter(|(_, plan)| plan.needs_acceleration()) {
-            let per_force = self.accelerations_per_force(ready, plan);
-            for (dof, forces) in &ready.drive.beyond {
-                let g = per_force[*dof];
-                for (value, force) in signal.iter_mut().zip(forces) {
-                    *value += g * force;
+    /// Adds what the straight lines miss at a sample: `gᵀ Δf` to an acceleration, with g the output of unit forces; to an output
+    /// of velocities `gᵀ Δp`, with Δp the impulse that a held force is ahead by and g the output of unit impulses.
+    fn add_beyond(&self, ready: &Prepared, predicted: &mut [Vec<f64>]) {
+        for (signal, plan) in predicted.iter_mut().zip(&self.outputs) {
+            let beyond = match plan.needs_acceleration() {
+                true => &ready.drive.beyond,
+                false => &ready.drive.impulse_beyond,
+            };
+            if beyond.is_empty() {
+                continue;
+            }
+            let gains = self.read_of_unit_forces(ready, plan);
+            for (dof, values) in beyond {
+                let g = gains[*dof];
+                for (sample, value) in signal.iter_mut().zip(values) {
+                    *sample += g * value;
                 }
             }
         }
     }
 
-    /// What an output of the acceleration reads off a unit force on each degree of freedom, 1/kg.
-    fn accelerations_per_force(&self, ready: &Prepared, plan: &OutputPlan) -> Vec<f64> {
+    /// What an output reads off the acceleration by a unit force on each degree of freedom (1/kg), or off the velocity by a unit
+    /// impulse.
+    fn read_of_unit_forces(&self, ready: &Prepared, plan: &OutputPlan) -> Vec<f64> {
         let n = self.model.dof_count();
         let (rest, bases) = (vec![0.0; n], vec![0.0; ready.drive.base_count]);
         let base = BaseMotion {
@@ -119,18 +126,27 @@ impl Simulator {
             acceleration: &bases,
         };
         let (mut force, mut acceleration) = (vec![0.0; n], vec![0.0; n]);
+        let still = Snapshot {
+            sample: 0,
+            displacement: &rest,
+            velocity: &rest,
+            dof_force: &rest,
+            element_force: &vec![0.0; self.elements.len()],
+        };
+        let at_rest = plan.read(&still, &rest, &base);
         let mut unit = |dof: usize| {
             force.fill(0.0);
             force[dof] = 1.0;
-            let at = Snapshot {
-                sample: 0,
-                displacement: &rest,
-                velocity: &rest,
+            let pushed = Snapshot {
                 dof_force: &force,
-                element_force: &[],
+                ..still
             };
-            ready.propagator.acceleration(&at, &mut acceleration);
-            plan.read(&at, &acceleration, &base)
+            ready.propagator.acceleration(&pushed, &mut acceleration);
+            let moved = Snapshot {
+                velocity: &acceleration,
+                ..still
+            };
+            plan.read(&moved, &acceleration, &base) - at_rest
         };
         (0..n).map(&mut unit).collect()
     }

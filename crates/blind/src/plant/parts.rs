@@ -41,6 +41,7 @@ pub(super) fn input(kind: InputKind, at: &str) -> Input {
         at: at.to_string(),
         gain: None,
         uncertainty: None,
+        between_samples: None,
     }
 }
 

@@ -141,6 +141,7 @@ fn model(pairing: &Pairing) -> Model {
             at: node.clone(),
             gain,
             uncertainty: None,
+            between_samples: None,
         });
         model.outputs.push(Output {
             channel: trace.channel.clone(),

@@ -109,14 +109,17 @@ class Model:
         kind: str = "force",
         gain: float | None = None,
         uncertainty: float | None = None,
+        between_samples: str | None = None,
     ) -> Model:
         """Adds what drives the machine, as measured: a ``"force"`` on the mass ``at``, N, the
         ``"displacement"`` of the moving base node ``at``, m, the ``"command"`` of the valve ``at``,
         1, or the ``"set_point"`` of the block ``at``. ``gain`` is in model units per unit of the
-        channel; without it the unit must fit.
+        channel; without it the unit must fit. ``between_samples`` is ``"smooth"``, ``"linear"`` or
+        ``"held"``; where it is not stated a diagnosis asks the records if the signal goes in jumps.
         """
         values = {"channel": channel, "kind": kind, "at": at, "gain": gain}
-        return self._with("input", {**values, "uncertainty": uncertainty})
+        values |= {"uncertainty": uncertainty, "between_samples": between_samples}
+        return self._with("input", values)
 
     def output(
         self,

@@ -1,0 +1,113 @@
+//! What inputs do between their samples.
+//!
+//! A record holds samples; a machine is driven by what is between them, too. What was measured follows a smooth curve; what a
+//! converter puts out keeps each value until the next sample (zero-order hold), which a plant sees half an interval later; what was
+//! computed may go in straight lines (first-order hold). Where the model file states none and a signal goes in jumps, the
+//! records decide: the likelihood of the model with re-estimated parameters under each, equally likely before any data.
+
+use simgap_effects::Placed;
+use simgap_estimate::{Cancel, EstimateError, FitOptions, Problem, Start, fit_initial_states};
+use simgap_model::{BetweenSamples, Model};
+use simgap_simulate::Run;
+
+use crate::{RECALIBRATION_STD, recalibrate};
+
+/// A signal goes in jumps where more than this share of its way lies in changes that stand alone.
+const IN_JUMPS: f64 = 0.5;
+
+/// The model with inputs that are read as the records say.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated, or the work was cancelled.
+pub fn read_inputs(model: &Model, runs: &[Run], cancel: &Cancel) -> Result<Model, EstimateError> {
+    let mut read = model.clone();
+    let asked: Vec<usize> = (0..model.inputs.len())
+        .filter(|&i| {
+            let input = &model.inputs[i];
+            let is_open = input.between_samples.is_none() && input.may_jump();
+            is_open && runs.iter().all(|run| goes_in_jumps(&run.inputs[i]))
+        })
+        .collect();
+    if asked.is_empty() {
+        return Ok(read);
+    }
+    let mut least = misfit(&read, runs, cancel)?;
+    for i in asked {
+        for reading in [BetweenSamples::Linear, BetweenSamples::Held] {
+            let before = read.inputs[i].between_samples.replace(reading);
+            let left = misfit(&read, runs, cancel)?;
+            match left < least {
+                true => least = left,
+                false => read.inputs[i].between_samples = before,
+            }
+        }
+    }
+    Ok(read)
+}
+
+/// Minus the log-likelihood of a model with re-estimated parameters.
+fn misfit(model: &Model, runs: &[Run], cancel: &Cancel) -> Result<f64, EstimateError> {
+    let mut problem = Problem::new(model, runs.to_vec())?;
+    problem.leaves_out_ends = true;
+    problem.cancel = cancel.clone();
+    let options = FitOptions::white(model.outputs.len());
+    let start = Start {
+        effects: vec![],
+        nominal: problem
+            .nominal_parameters()
+            .into_iter()
+            .map(|candidate| {
+                let values = vec![1.0; candidate.effect.parameters().len()];
+                Placed::new(candidate.effect, candidate.at, values)
+            })
+            .collect(),
+        initial: fit_initial_states(&problem, &[], &options)?
+            .estimate
+            .initial,
+    };
+    let loose = FitOptions {
+        nominal_std: Some(RECALIBRATION_STD),
+        ..options
+    };
+    Ok(recalibrate(&problem, &start, &loose)?.misfit)
+}
+
+/// Whether most of the way that a signal goes lies in changes that stand alone: it pauses before and after them.
+fn goes_in_jumps(signal: &[f64]) -> bool {
+    let steps: Vec<f64> = signal
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .collect();
+    let pauses = |k: Option<usize>| k.and_then(|k| steps.get(k)).is_none_or(|step| *step == 0.0);
+    let alone = steps
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| pauses(k.checked_sub(1)) && pauses(Some(k + 1)));
+    let in_jumps: f64 = alone.map(|(_, step)| step).sum();
+    in_jumps > IN_JUMPS * steps.iter().sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::goes_in_jumps;
+
+    #[test]
+    fn verify_what_goes_in_jumps() {
+        let held: Vec<f64> = (0..100)
+            .map(|i| if i / 7 % 2 == 0 { 1.0 } else { -1.0 })
+            .collect();
+        assert!(goes_in_jumps(&held));
+        // It sets in gently.
+        let gently: Vec<f64> = held
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v * (i as f64 / 20.0).min(1.0))
+            .collect();
+        assert!(goes_in_jumps(&gently));
+        let smooth: Vec<f64> = (0..100).map(|i| (0.3 * f64::from(i)).sin()).collect();
+        let ramps: Vec<f64> = (0..100).map(|i| f64::from((i % 40).min(10))).collect();
+        for signal in [smooth, ramps, vec![0.0; 50], vec![1.0], vec![]] {
+            assert!(!goes_in_jumps(&signal));
+        }
+    }
+}
