@@ -57,7 +57,7 @@ mod parameter;
 mod parts;
 mod refuse;
 mod sensitivity;
-mod serial;
+pub mod serial;
 mod travel;
 mod uncertainty;
 
