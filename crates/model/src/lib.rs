@@ -57,6 +57,7 @@ mod node;
 mod output;
 mod parameter;
 mod parts;
+mod pole_kind;
 mod refuse;
 mod sensitivity;
 pub mod serial;
@@ -82,5 +83,6 @@ pub use parameter::Parameter;
 pub use parts::{
     DEFAULT_UNCERTAINTY, Damper, EffectEntry, GROUND, Load, Location, Mass, Pendulum, Spring,
 };
+pub use pole_kind::{PoleKind, pole_kinds};
 pub use sensitivity::{PoleSensitivity, pole_sensitivities, receptance_sensitivity};
 pub use uncertainty::NominalQuantity;
