@@ -173,7 +173,8 @@ fn verify_models_without_slopes() {
             .iter()
             .all(|pole| pole["parameters"].is_null())
     );
-    assert_eq!(found["notes"].as_array().unwrap().len(), 1);
+    // Twice at zero: a derivative is missing, and nothing fixes the level.
+    assert_eq!(found["notes"].as_array().unwrap().len(), 2);
     bench.done(&["modes", "free.toml", "--out", "out"]);
 }
 
