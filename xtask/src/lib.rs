@@ -4,6 +4,7 @@ pub mod blind_check;
 pub mod demo_records;
 pub mod effects_docs;
 pub mod generated;
+mod mold_records;
 pub mod reproduce;
 pub mod rigs;
 pub mod tidy;

@@ -1,4 +1,5 @@
-//! `cargo xtask tutorial-records [--check]`: the logger files that `docs/tutorial.md` works with.
+//! `cargo xtask tutorial-records [--check]`: the logger files that `docs/tutorial.md` works with, and those of
+//! `docs/hydraulics.md` ([`crate::mold_records`]).
 //!
 //! A table on leaf springs is simulated with an effect that the tutorial's model lacks, and written
 //! as a data logger would: lines before the header, a row of units, semicolons, decimal commas, a
@@ -6,7 +7,6 @@
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use clap::Args;
 use simgap_effects::{Placed, find};
@@ -16,6 +16,7 @@ use simgap_simulate::{Run, Simulator};
 
 use crate::demo_records::{DemoError, Noise};
 use crate::generated::workspace_root;
+use crate::mold_records;
 
 /// Where the files are kept, from the root of the workspace.
 pub const FOLDER: &str = "fixtures/tutorial";
@@ -57,9 +58,10 @@ pub fn run(args: &TutorialArgs) -> Result<Vec<String>, DemoError> {
     if args.check {
         return differences();
     }
-    simgap_record::ensure_writable_dir(&folder())?;
-    for (name, text) in files()? {
-        simgap_record::write_text_atomic(&folder().join(name), &text)?;
+    for (folder, name, text) in all_files()? {
+        let folder = workspace_root().join(folder);
+        simgap_record::ensure_writable_dir(&folder)?;
+        simgap_record::write_text_atomic(&folder.join(name), &text)?;
     }
     Ok(vec![])
 }
@@ -69,15 +71,23 @@ pub fn run(args: &TutorialArgs) -> Result<Vec<String>, DemoError> {
 /// # Errors
 /// As [`run`].
 pub fn differences() -> Result<Vec<String>, DemoError> {
-    let differ = files()?.into_iter().filter(|(name, text)| {
-        !std::fs::read_to_string(folder().join(name)).is_ok_and(|found| &found == text)
+    let differ = all_files()?.into_iter().filter(|(folder, name, text)| {
+        let path = workspace_root().join(folder).join(name);
+        !std::fs::read_to_string(path).is_ok_and(|found| &found == text)
     });
-    let line = |(name, _)| format!("{FOLDER}/{name}: differs, run `cargo xtask tutorial-records`");
+    let line =
+        |(folder, name, _)| format!("{folder}/{name}: differs, run `cargo xtask tutorial-records`");
     Ok(differ.map(line).collect())
 }
 
-fn folder() -> PathBuf {
-    workspace_root().join(FOLDER)
+/// Folder, name and text of each file.
+fn all_files() -> Result<Vec<(&'static str, &'static str, String)>, DemoError> {
+    let table = files()?
+        .into_iter()
+        .map(|(name, text)| (FOLDER, name, text));
+    let mold = mold_records::files()?.into_iter();
+    let mold = mold.map(|(name, text)| (mold_records::FOLDER, name, text));
+    Ok(table.chain(mold).collect())
 }
 
 fn files() -> Result<Vec<(&'static str, String)>, DemoError> {

@@ -167,3 +167,21 @@ fn verify_the_records_of_the_tutorial_are_what_the_command_makes() {
     let differences = xtask::tutorial_records::differences().unwrap();
     assert!(differences.is_empty(), "\n{}", differences.join("\n"));
 }
+
+/// The contract and the Python module name every kind of input and output that a model file may have.
+#[test]
+fn verify_every_kind_of_input_and_output_is_in_the_contract() {
+    use simgap_model::{InputKind, OutputKind};
+    let contract = read(&root().join("docs/contract.md"));
+    let builder = read(&root().join("crates/python/python/simgap/_model.py"));
+    let inputs = InputKind::ALL.map(InputKind::name);
+    let outputs = OutputKind::ALL.map(OutputKind::name);
+    for kind in inputs.iter().chain(&outputs) {
+        let is_word = |text: &str| {
+            text.split(|c: char| !(c.is_alphanumeric() || c == '_'))
+                .any(|word| word == *kind)
+        };
+        assert!(is_word(&contract), "docs/contract.md: {kind}");
+        assert!(is_word(&builder), "_model.py: {kind}");
+    }
+}

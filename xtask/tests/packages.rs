@@ -1,20 +1,29 @@
 //! Library crates are ready to be packaged: what `cargo package` would take is there, and enough.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The library crates that are packaged so far.
-const LIBRARIES: [&str; 8] = [
+/// The library crates: every crate but the program and the Python module.
+const LIBRARIES: [&str; 17] = [
     "tables",
     "signal",
     "record",
     "model",
     "integrate",
+    "effects",
     "mold",
     "alpha",
+    "simulate",
+    "estimate",
+    "inference",
+    "diagnose",
+    "blind",
+    "rigs",
     "report",
+    "app",
+    "fleet",
 ];
 
 fn root() -> PathBuf {
@@ -34,6 +43,63 @@ fn cargo(arguments: &[&str]) -> String {
 
 fn manifest(name: &str) -> String {
     fs::read_to_string(root().join(format!("crates/{name}/Cargo.toml"))).unwrap()
+}
+
+#[test]
+fn verify_no_library_is_left_out() {
+    let folders = fs::read_dir(root().join("crates")).unwrap();
+    let mut found: Vec<String> = folders
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| !["cli", "python"].contains(&name.as_str()))
+        .collect();
+    found.sort();
+    let mut known = LIBRARIES;
+    known.sort_unstable();
+    assert_eq!(found, known);
+}
+
+/// Packs every crate against the packages of the others, as a registry would hold them.
+#[test]
+fn verify_every_library_is_packaged() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().to_str().unwrap();
+    let mut arguments = vec!["package", "--no-verify", "--allow-dirty", "--offline"];
+    arguments.extend(["--target-dir", target, "--workspace"]);
+    arguments.extend(["--exclude", "xtask", "--exclude", "simgap-python"]);
+    cargo(&arguments);
+    for name in LIBRARIES {
+        let package = folder
+            .path()
+            .join(format!("package/simgap-{name}-0.1.0.crate"));
+        assert!(package.is_file(), "{}", package.display());
+    }
+}
+
+/// Runs the examples of every library. Ignored because it builds them; `.ci/run` has them built and runs it.
+#[test]
+#[ignore = "builds every crate"]
+fn verify_examples_run() {
+    cargo(&["build", "--workspace", "--examples", "--offline"]);
+    // This test is in `target/<profile>/deps`.
+    let own = std::env::current_exe().unwrap();
+    let built = own.parent().unwrap().parent().unwrap().join("examples");
+    for name in LIBRARIES {
+        for entry in fs::read_dir(root().join(format!("crates/{name}/examples"))).unwrap() {
+            let source = entry.unwrap().path();
+            let example = built.join(source.file_stem().unwrap());
+            let folder = tempfile::tempdir().unwrap();
+            let output = Command::new(&example)
+                .arg(folder.path())
+                .output()
+                .unwrap_or_else(|error| panic!("{}: {error}", example.display()));
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(
+                output.status.success(),
+                "{name}: {}: {told}",
+                source.display()
+            );
+        }
+    }
 }
 
 #[test]
@@ -160,6 +226,8 @@ fn verify_the_mold_drags_no_file_formats() {
             );
         }
     }
+    // Nor do they ask for arrays of ndarray, which their callers may not want.
+    assert!(!needed("simgap-alpha").iter().any(|name| name == "ndarray"));
     // The rule can fail: the program itself reads them.
     assert!(needed("simgap-cli").iter().any(|name| name == "parquet"));
 }

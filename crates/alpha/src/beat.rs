@@ -21,7 +21,7 @@ use crate::least_squares::{linear, nonlinear};
 ///
 /// Reference: `park-mold`, Table 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BeatParameters {
     /// F₀.
     pub amplitude: f64,
@@ -33,7 +33,7 @@ pub struct BeatParameters {
 
 /// The two lines of a beat, (2).
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinePair {
     /// Lower line ω/2, Hz.
     pub lower_hz: f64,
@@ -94,7 +94,7 @@ impl LinePair {
 /// f(t) = F₀ cos(π δ t + φ_s) cos(π (ω + δ) t + φ_c)
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BeatFit {
     /// F₀, ω, δ.
     pub parameters: BeatParameters,

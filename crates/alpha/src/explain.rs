@@ -7,7 +7,7 @@ use crate::{AlphaError, Oscillator, RateFormula, force_gain};
 
 /// A fault that alternates from sample to sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ConverterFault {
     /// Every other sample τ late, the others τ early: y_n = y(n h + (−1)ⁿ τ).
     AlternatingTiming,
@@ -17,7 +17,7 @@ pub enum ConverterFault {
 
 /// The amplitude F₀ of the unknown force at f_s/2 − f, for one excitation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ObservedLine {
     /// Excitation f, Hz.
     pub excitation_freq_hz: f64,
@@ -27,7 +27,7 @@ pub struct ObservedLine {
 
 /// One row explained.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExplanationRow {
     /// Excitation f, Hz.
     pub excitation_freq_hz: f64,
@@ -41,7 +41,7 @@ pub struct ExplanationRow {
 
 /// How well one number explains all rows.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Explanation {
     /// The fault assumed.
     pub fault: ConverterFault,

@@ -17,7 +17,7 @@ use crate::error::{all_finite, positive};
 /// | k | `stiffness` | N/m |
 /// | −m g | `load` | N |
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Oscillator {
     /// m, kg.
     pub mass_kg: f64,
@@ -61,7 +61,7 @@ impl Oscillator {
 
 /// The unknown force and the motion it was computed from, one value per sample.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct UnknownForce {
     /// v, m/s.
     pub velocity: Vec<f64>,

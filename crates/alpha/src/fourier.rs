@@ -16,7 +16,7 @@ const GRID: usize = 7200;
 /// f(t) = a₀ + Σ_n a_n cos(2π n f t) + b_n sin(2π n f t),   n = 1 .. N
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FourierFit {
     /// f, Hz.
     pub base_freq_hz: f64,

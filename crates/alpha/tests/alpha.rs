@@ -469,3 +469,18 @@ fn verify_errors_say_what_is_needed() {
     let silent = fit_folded_beat(&[0.0; 100], 0.01, 0, 48.0);
     assert!(matches!(silent, Err(AlphaError::Undetermined { .. })));
 }
+
+/// Results come back from JSON as they were.
+#[cfg(feature = "serde")]
+#[test]
+fn verify_results_come_back_from_json() {
+    let explanation = explain(PARK, ConverterFault::AlternatingTiming);
+    let text = serde_json::to_string(&explanation).unwrap();
+    let read: simgap_alpha::Explanation = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, explanation);
+    let y: Vec<f64> = (0..60).map(|n| (0.3 * f64::from(n)).sin() * 1e-3).collect();
+    let force = unknown_force(&PAPER, &y, &[0.0; 60], 0.01, Differentiator::Park).unwrap();
+    let text = serde_json::to_string(&force).unwrap();
+    let read: simgap_alpha::UnknownForce = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, force);
+}

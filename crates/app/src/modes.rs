@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::Serialize;
-use simgap_model::{DampedMode, InputKind, Model, damped_modes_of};
+use simgap_model::{DampedMode, InputKind, Model, PoleKind, damped_modes_of, pole_kinds};
 use simgap_report::chart::{LineChart, Role, Scale, Series};
 
 use crate::AppError;
@@ -58,6 +58,8 @@ pub struct Mode {
     pub damping_ratio: f64,
     /// The pole with the positive imaginary part, rad/s.
     pub pole: Complex,
+    /// Whether it vibrates, dies away, or is a level that nothing fixes.
+    pub kind: PoleKind,
     /// One for each mass.
     pub shape: Vec<Share>,
 }
@@ -110,15 +112,43 @@ pub fn modes(model: &Model, path: &Path) -> Result<Modes, AppError> {
     let structure = model.linearise(&at).map_err(failed)?;
     let mut found = damped_modes_of(&structure, &model.first_order()).map_err(failed)?;
     snap_to_zero(&mut found);
-    let responses = responses(model, &found, &at, &mut notes).map_err(failed)?;
+    let poles: Vec<_> = found.iter().map(|mode| mode.eigenvalue).collect();
+    let kinds = pole_kinds(&poles);
+    notes.extend(neutral_note(&kinds));
+    let away: Vec<f64> = found
+        .iter()
+        .zip(&kinds)
+        .filter(|(_, kind)| **kind != PoleKind::Neutral)
+        .map(|(mode, _)| mode.natural_freq_hz)
+        .collect();
+    let responses = responses(model, &away, &at, &mut notes).map_err(failed)?;
     Ok(Modes {
         schema: SCHEMA,
         model: model.name.clone(),
         operating_point: points(model, &at),
-        modes: found.iter().map(|mode| told_mode(model, mode)).collect(),
+        modes: found
+            .iter()
+            .zip(kinds)
+            .map(|(mode, kind)| told_mode(model, mode, kind))
+            .collect(),
         responses,
         notes,
     })
+}
+
+/// What is to be said of poles next to zero, if there are any.
+#[must_use]
+pub fn neutral_note(kinds: &[PoleKind]) -> Option<String> {
+    let count = kinds.iter().filter(|kind| **kind == PoleKind::Neutral);
+    let told = match count.count() {
+        0 => return None,
+        1 => "one pole is".to_owned(),
+        count => format!("{count} poles are"),
+    };
+    Some(format!(
+        "{told} neutral, next to zero beside the vibrations: a level that nothing fixes, such as a position that no spring \
+         holds or the pressures of a cylinder whose valve is in its middle"
+    ))
 }
 
 /// Rest under the loads, or zero where there is none, and what is to be said of the linearisation.
@@ -181,7 +211,7 @@ fn snap_to_zero(modes: &mut [DampedMode]) {
     }
 }
 
-fn told_mode(model: &Model, mode: &DampedMode) -> Mode {
+fn told_mode(model: &Model, mode: &DampedMode, kind: PoleKind) -> Mode {
     let masses = model.masses.iter().zip(&mode.mode_shape);
     Mode {
         natural_freq_hz: mode.natural_freq_hz,
@@ -191,6 +221,7 @@ fn told_mode(model: &Model, mode: &DampedMode) -> Mode {
             re: mode.eigenvalue.re,
             im: mode.eigenvalue.im,
         },
+        kind,
         shape: masses
             .map(|(mass, part)| Share {
                 mass: mass.name.clone(),
@@ -204,12 +235,12 @@ fn told_mode(model: &Model, mode: &DampedMode) -> Mode {
 /// Every output over a force on every mass that an input drives, or on every mass if none is driven.
 fn responses(
     model: &Model,
-    modes: &[DampedMode],
+    poles_hz: &[f64],
     at: &[f64],
     notes: &mut Vec<String>,
 ) -> Result<Vec<Response>, simgap_model::ModelError> {
     let forced = driven(model)?;
-    let freqs = frequencies(modes);
+    let freqs = frequencies(poles_hz);
     // Response of the linearised plant: pendulums stand at the operating point.
     let mut tangent = model.clone();
     for pendulum in &mut tangent.pendulums {
@@ -279,12 +310,7 @@ fn driven(model: &Model) -> Result<Vec<Driven>, simgap_model::ModelError> {
 }
 
 /// Equal ratios from well below the lowest to well above the highest pole away from zero.
-fn frequencies(modes: &[DampedMode]) -> Vec<f64> {
-    let away: Vec<f64> = modes
-        .iter()
-        .map(|mode| mode.natural_freq_hz)
-        .filter(|f| *f > 0.0)
-        .collect();
+fn frequencies(away: &[f64]) -> Vec<f64> {
     let [from, to] = if away.is_empty() {
         WITHOUT_POLES_HZ
     } else {

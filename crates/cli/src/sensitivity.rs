@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use serde::Serialize;
-use simgap_app::modes::{At, Complex, operating_point, points};
+use simgap_app::modes::{At, Complex, neutral_note, operating_point, points};
 use simgap_app::{input, json};
-use simgap_model::{Model, Parameter, PoleSensitivity};
+use simgap_model::{Model, Parameter, PoleKind, PoleSensitivity, pole_kinds};
 use simgap_report::chart::{Bar, BarChart, Role};
 
 use crate::args::{Format, SensitivityArgs};
@@ -20,6 +20,8 @@ const SCHEMA: &str = "simgap-sensitivity/1";
 const FILES: [&str; 2] = ["sensitivity.json", "sensitivity.svg"];
 /// Changes below this share of the whole are rounding.
 const ROUNDING: f64 = 1e-12;
+/// Of a pole next to zero, parameters that move it by less than this share of the largest are left out of the table.
+const NEUTRAL_SHARE: f64 = 1e-3;
 /// Bars a picture has room for.
 const BARS: usize = 24;
 
@@ -38,6 +40,7 @@ struct Pole {
     natural_freq_hz: f64,
     damping_ratio: f64,
     pole: Complex,
+    kind: PoleKind,
     /// Largest first; `None` where the pole has no derivative.
     parameters: Option<Vec<Row>>,
     /// Every parameter off by the tolerance, each as if by chance: root of the sum of squares.
@@ -85,14 +88,22 @@ pub(crate) fn run(args: &SensitivityArgs) -> Result<(), CliError> {
     if found.iter().any(|pole| pole.derivative.is_none()) {
         notes.push("a pole that is there more than once has no derivative".to_owned());
     }
+    let poles: Vec<_> = found.iter().map(|found| found.pole).collect();
+    let kinds = pole_kinds(&poles);
+    notes.extend(neutral_note(&kinds));
+    // A level that nothing fixes comes after what dies away or vibrates.
+    let (neutral, rest): (Vec<_>, Vec<_>) = found
+        .iter()
+        .zip(kinds)
+        .partition(|(_, kind)| *kind == PoleKind::Neutral);
+    let ordered = rest.into_iter().chain(neutral);
     let result = Sensitivity {
         schema: SCHEMA,
         model: model.name.clone(),
         tolerance_percent: args.tolerance,
         operating_point: points(&model, &at),
-        poles: found
-            .iter()
-            .map(|pole| ranked(&model, pole, args.tolerance))
+        poles: ordered
+            .map(|(pole, kind)| ranked(&model, pole, kind, args.tolerance))
             .collect(),
         notes,
     };
@@ -107,7 +118,7 @@ pub(crate) fn run(args: &SensitivityArgs) -> Result<(), CliError> {
 }
 
 /// The parameters of a pole, the one that moves it most first.
-fn ranked(model: &Model, pole: &PoleSensitivity, tolerance: f64) -> Pole {
+fn ranked(model: &Model, pole: &PoleSensitivity, kind: PoleKind, tolerance: f64) -> Pole {
     let parameters: Vec<Parameter> = model.parameters();
     let rows = pole.derivative.as_ref().map(|derivatives| {
         let mut rows: Vec<Row> = parameters
@@ -145,6 +156,7 @@ fn ranked(model: &Model, pole: &PoleSensitivity, tolerance: f64) -> Pole {
             re: pole.pole.re,
             im: pole.pole.im,
         },
+        kind,
         parameters: rows,
         freq_spread_hz: changes.map(|all| all.iter().map(|c| c * c).sum::<f64>().sqrt()),
     }
@@ -167,6 +179,10 @@ fn told(result: &Sensitivity, out: Option<&Path>) -> String {
         None => "none".to_owned(),
     };
     for pole in &result.poles {
+        if pole.kind == PoleKind::Neutral {
+            text.push_str(&told_neutral(pole));
+            continue;
+        }
         let title = format!(
             "{} Hz, damping ratio {}",
             figure(pole.natural_freq_hz),
@@ -201,10 +217,49 @@ fn told(result: &Sensitivity, out: Option<&Path>) -> String {
     text
 }
 
+/// A level that nothing fixes: it has a rate and no frequency.
+fn told_neutral(pole: &Pole) -> String {
+    let rate = pole.pole.re;
+    let time = match rate.abs() {
+        0.0 => String::new(),
+        size => format!(" ({} s)", figure(1.0 / size)),
+    };
+    let title = format!("neutral: {} rad/s{time}", figure(rate));
+    let mut text = format!("{}\n", styled(STRONG, &title));
+    let Some(parameters) = &pole.parameters else {
+        text.push_str("  this pole is there more than once: no derivative\n");
+        return text;
+    };
+    let change = |row: &Row| 0.01 * row.value * row.pole_derivative.re;
+    let largest = parameters.iter().map(change).map(f64::abs);
+    let largest = largest.fold(0.0, f64::max);
+    let moves = |row: &&Row| change(row).abs() > NEUTRAL_SHARE * largest;
+    let rows: Vec<Vec<String>> = parameters
+        .iter()
+        .filter(moves)
+        .map(|row| {
+            let change = figure(change(row));
+            vec![shown(&row.parameter), figure(row.value), change]
+        })
+        .collect();
+    if rows.is_empty() {
+        text.push_str("  no parameter moves it\n");
+    } else {
+        table(
+            &mut text,
+            &["parameter", "value", "rad/s per %"],
+            &rows,
+            &[1, 2],
+        );
+    }
+    text
+}
+
 /// Change of each frequency for one percent of each parameter, the largest of every pole first.
 fn chart(result: &Sensitivity) -> BarChart {
     let mut bars = vec![];
-    for pole in &result.poles {
+    let poles = result.poles.iter();
+    for pole in poles.filter(|pole| pole.kind != PoleKind::Neutral) {
         for row in pole.parameters.iter().flatten() {
             let Some(change) = row.freq_percent_per_percent else {
                 continue;

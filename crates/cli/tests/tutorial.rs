@@ -1,7 +1,7 @@
-//! `docs/tutorial.md`, followed word by word: every command is run in a shell in a fresh folder, and
+//! `docs/tutorial.md` and `docs/hydraulics.md`, followed word by word: every command is run in a shell in a fresh folder, and
 //! what the page shows is what is printed.
 //!
-//! `UPDATE_TUTORIAL=1 cargo test -p simgap-cli --test tutorial` writes into the page what is printed;
+//! `UPDATE_TUTORIAL=1 cargo test -p simgap-cli --test tutorial` writes into the pages what is printed;
 //! read the sentences around it before you commit.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
@@ -135,6 +135,8 @@ fn followed(page: &str, reader: &mut Reader) -> (String, usize) {
                 reader.write(name, body);
                 text += part;
             }
+            // A formula.
+            Some(("text", _)) => text += part,
             Some(("sh", body)) => {
                 install(body);
                 text += part;
@@ -214,33 +216,58 @@ fn install(body: &str) {
     }
 }
 
-#[test]
-fn verify_the_tutorial_prints_what_it_shows() {
-    let path = root().join("docs/tutorial.md");
+/// Follows a page of `docs` and compares it with what is printed, or writes it; the reader after its last command.
+fn check_page(name: &str, least: usize, words: &[&str]) -> Reader {
+    let path = root().join("docs").join(name);
     let page = fs::read_to_string(&path).unwrap();
     let mut reader = Reader::new();
     let (needed, commands) = followed(&page, &mut reader);
-    assert!(commands >= 13, "{commands} commands");
-    for command in [
-        "check", "init", "simulate", "compare", "diagnose", "effects",
-    ] {
-        assert!(
-            page.contains(&format!("\n$ simgap {command} ")),
-            "{command}"
-        );
+    assert!(commands >= least, "{commands} commands");
+    for word in words {
+        assert!(page.contains(&format!("\n$ simgap {word} ")), "{word}");
     }
-    the_sentences_hold(&mut reader);
     if std::env::var_os("UPDATE_TUTORIAL").is_some() {
         fs::write(&path, &needed).unwrap();
-        return;
+        return reader;
     }
     let (was, is): (Vec<&str>, Vec<&str>) = (page.lines().collect(), needed.lines().collect());
     let differs = was.iter().zip(&is).find(|(was, is)| !alike(was, is));
     assert!(
         differs.is_none() && was.len() == is.len(),
-        "docs/tutorial.md shows and the program prints: {differs:#?}\n\
+        "docs/{name} shows and the program prints: {differs:#?}\n\
          run UPDATE_TUTORIAL=1 cargo test -p simgap-cli --test tutorial, then read the page"
     );
+    reader
+}
+
+#[test]
+fn verify_the_tutorial_prints_what_it_shows() {
+    let words = [
+        "check", "init", "simulate", "compare", "diagnose", "effects",
+    ];
+    the_sentences_hold(&mut check_page("tutorial.md", 13, &words));
+}
+
+/// The machine has air in the oil of the left cylinder: 0.7 times the bulk modulus of the model.
+#[test]
+fn verify_the_page_on_hydraulics_prints_what_it_shows() {
+    let words = [
+        "modes",
+        "sensitivity",
+        "simulate",
+        "compare",
+        "diagnose",
+        "effects",
+    ];
+    let reader = check_page("hydraulics.md", 10, &words);
+    let answer = fs::read_to_string(reader.cwd.join("result/diagnosis.json")).unwrap();
+    let answer: serde_json::Value = serde_json::from_str(&answer).unwrap();
+    let effect = &answer["verdict"]["effects"][0];
+    assert_eq!(effect["kind"], "bulk_modulus");
+    assert_eq!(effect["at"]["between"][0], "left.p1");
+    let interval = &effect["parameters"][0]["ci95"];
+    let [low, high] = [0, 1].map(|k| interval[k].as_f64().unwrap());
+    assert!(low < 0.7 && 0.7 < high && high - low < 0.05, "{interval}");
 }
 
 /// The README shows lines of what the demo prints; `...` stands for those between.

@@ -27,6 +27,7 @@ use crate::{EstimateError, FitOptions, Problem, Start};
 
 /// A parameter value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Interval {
     /// Estimate.
     pub value: f64,

@@ -84,6 +84,7 @@ mod score;
 mod signals;
 mod site;
 mod spread;
+mod summary;
 mod whitening;
 
 pub use base::{Base, linearise_at};
@@ -98,6 +99,7 @@ pub use outright::score_outright;
 pub use problem::{FitOptions, Problem};
 pub use score::{Score, score, score_shapes};
 pub use spread::deviations;
+pub use summary::{EstimatedEffect, EstimatedParameter, FitSummary};
 pub use whitening::Whitening;
 
 pub use simgap_simulate::SimulateError as EstimateError;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue, sites};
-use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, Node, OutputKind, PRESSURE_UNIT_PA};
+use simgap_model::{DEFAULT_UNCERTAINTY, Form, Location, Model, Node, OutputKind};
 use simgap_simulate::{Run, Simulator, substeps_for};
 
 use crate::candidate::Candidate;
@@ -270,21 +270,18 @@ impl Problem {
             .map(|run| {
                 let mut state = vec![0.0; 2 * n];
                 for (output, measured) in self.model.outputs.iter().zip(&run.measured) {
-                    let nodes = self.model.output_nodes(output);
-                    let (Ok([Node::Dof(i), Node::Ground]), Some(values)) = (nodes, measured) else {
+                    let (Ok(reading), Some(values)) = (self.model.reading(output), measured) else {
+                        continue;
+                    };
+                    let [Node::Dof(i), Node::Ground] = reading.nodes else {
                         continue;
                     };
                     let first = values.first().copied().unwrap_or(0.0);
-                    match output.kind {
-                        OutputKind::Displacement | OutputKind::Roll => state[i] = first,
-                        OutputKind::Velocity => state[n + i] = first,
-                        OutputKind::Spool => state[i] = first,
-                        OutputKind::Pressure => {
-                            let at = output.at.as_ref().and_then(|at| self.model.chamber(at));
-                            let start = at.map_or(0.0, |(c, chamber)| c.pressures[chamber]);
-                            state[n + i] = (first - start) / PRESSURE_UNIT_PA;
-                        }
-                        OutputKind::Acceleration | OutputKind::Force | OutputKind::Flow => {}
+                    match reading.form {
+                        Form::Displacement => state[i] = first,
+                        Form::Velocity => state[n + i] = first,
+                        Form::Rate { scale, offset } => state[n + i] = (first - offset) / scale,
+                        Form::Acceleration | Form::Members { .. } | Form::Orifice { .. } => {}
                     }
                 }
                 state

@@ -278,3 +278,31 @@ fn verify_a_direction_the_data_do_not_see_has_an_interval_that_says_nothing() {
         assert!(half < 0.05 * interval.value, "{interval:?}");
     }
 }
+
+/// A summary has the numbers of the fit under their names, and comes back from JSON as it was.
+#[test]
+fn verify_a_summary_says_what_the_fit_says() {
+    let model = model(OSCILLATOR);
+    let effects = oscillator_errors(1.07, 1.3);
+    let clean = truth(
+        &model,
+        &effects,
+        drive(0.01, 400, 6.0),
+        0.01,
+        &[0.002, -0.1],
+    );
+    let problem = problem(&model, noisy(&clean, 5e-4, 7));
+    let from = start(oscillator_errors(1.01, 1.01), vec![], &[0.0, 0.0]);
+    let fit = fit(&problem, &from, &FitOptions::white(1)).unwrap();
+    let summary = fit.summary();
+    let stiffness = &summary.effects[0];
+    assert_eq!(stiffness.kind, "stiffness_error");
+    assert_eq!(stiffness.at, between("block", "ground"));
+    assert_eq!(stiffness.parameters[0].value, fit.intervals[0][0].value);
+    assert_eq!(stiffness.parameters[0].ci95, Some(fit.intervals[0][0].ci95));
+    assert_eq!(summary.variance, fit.variance);
+    let text = serde_json::to_string(&summary).unwrap();
+    let read: simgap_estimate::FitSummary = serde_json::from_str(&text).unwrap();
+    assert_eq!(read.effects, summary.effects);
+    assert_eq!(read.initial, summary.initial);
+}

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 use simgap_app::{AppError, input};
 use simgap_effects::{Action, Placed, SiteKind, find, sites};
-use simgap_model::{Location, Model};
+use simgap_model::Model;
 
 use crate::FleetError;
 use crate::findings::{Finding, Series, is_of_the_model};

@@ -20,6 +20,8 @@
 //! # Ok::<(), simgap_integrate::IntegrateError>(())
 //! ```
 
+#[cfg(feature = "ndarray")]
+mod arrays;
 mod error;
 pub mod exact;
 mod forward;

@@ -6,14 +6,18 @@ use crate::problem::TimeGrid;
 
 /// Motion of every degree of freedom at every sample.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motion {
     /// Time of each sample, s.
     pub time_s: Vec<f64>,
     /// m, n × samples.
+    #[cfg_attr(feature = "serde", serde(with = "simgap_model::serial::rows"))]
     pub displacement: Mat<f64>,
     /// m/s, n × samples.
+    #[cfg_attr(feature = "serde", serde(with = "simgap_model::serial::rows"))]
     pub velocity: Mat<f64>,
     /// m/s², n × samples.
+    #[cfg_attr(feature = "serde", serde(with = "simgap_model::serial::rows"))]
     pub acceleration: Mat<f64>,
 }
 
@@ -43,6 +47,7 @@ impl Motion {
 
 /// What a simulation cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
     /// Steps that were taken.
     pub steps: usize,
@@ -58,6 +63,7 @@ pub struct Work {
 
 /// Motion and work.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solution {
     /// The motion.
     pub motion: Motion,

@@ -1,7 +1,7 @@
 //! The checks that make a list of parts a model.
 
-use crate::refuse::{check_gain, check_uncertainty, finite, is_one_of, item, node_name, unique};
-use crate::{BetweenSamples, InputKind, Location, Model, ModelError, Node, OutputKind};
+use crate::refuse::{check_gain, check_uncertainty, finite, item, node_name, unique};
+use crate::{Location, Model, ModelError, Node, OutputKind};
 
 impl Model {
     /// Checks that the parts make a model; [`Model::from_toml`] has done so.
@@ -105,30 +105,8 @@ impl Model {
             let place = item("input", &input.channel);
             check_gain(&place, input.gain)?;
             check_uncertainty(&place, input.uncertainty)?;
-            if !input.may_jump() && input.between_samples() != BetweenSamples::Smooth {
-                let found = match input.between_samples() {
-                    BetweenSamples::Held => "held",
-                    _ => "linear",
-                };
-                return Err(ModelError::Shape {
-                    place,
-                    found: format!("between_samples = \"{found}\""),
-                    needed: "\"smooth\" for a displacement: a node that jumps has no velocity"
-                        .into(),
-                });
-            }
-            match input.kind {
-                InputKind::Force => self.check_mass(&input.at, &place)?,
-                InputKind::Displacement => node_name(&place, &input.at)?,
-                InputKind::Command => {
-                    let names = self.valves.iter().map(|valve| &valve.name);
-                    is_one_of(&place, &input.at, names, "the name of a [[valve]]")?;
-                }
-                InputKind::SetPoint => {
-                    let names = self.blocks.iter().map(|block| &block.name);
-                    is_one_of(&place, &input.at, names, "the name of a [[block]]")?;
-                }
-            }
+            input.check_between_samples()?;
+            self.check_input(input)?;
         }
         Ok(())
     }
@@ -149,7 +127,7 @@ impl Model {
             let force = output.kind == OutputKind::Force;
             match (&output.at, &output.between) {
                 (Some(_), None) if !force => {
-                    self.output_nodes(output)?;
+                    self.reading(output)?;
                 }
                 (None, Some(pair)) if force => self.check_pair(pair, &place)?,
                 _ => {

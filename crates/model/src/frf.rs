@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use faer::{Mat, c64};
 
-use crate::{Model, ModelError, Output, OutputKind, PRESSURE_UNIT_PA, StructuralMatrices};
+use crate::{Form, Model, ModelError, Node, Reading, StructuralMatrices};
 
 /// Which motion a frequency response relates to force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,57 +88,31 @@ impl Model {
         let structure = self.tangent_matrices()?;
         let receptance = frequency_response(&structure, freq_hz, FrfKind::Receptance)?;
         let omega = TAU * freq_hz;
-        let zero = c64::new(0.0, 0.0);
-        let motion =
-            |name: Option<&String>, force: usize| match name.and_then(|name| self.node(name)) {
-                Some(node) => node
-                    .terms()
-                    .map(|(i, weight)| weight * receptance[(i, force)])
-                    .fold(zero, |sum, part| sum + part),
-                None => zero,
-            };
-        let response = |output: &Output, force: usize| {
-            let of_node = |kind: FrfKind| kind.factor(omega) * motion(output.at.as_ref(), force);
-            match (&output.kind, &output.between) {
-                (OutputKind::Displacement, _) => of_node(FrfKind::Receptance),
-                (OutputKind::Velocity, _) => of_node(FrfKind::Mobility),
-                (OutputKind::Acceleration, _) => of_node(FrfKind::Accelerance),
-                (OutputKind::Force, Some(pair)) => {
-                    let [stiffness, damping] = self.stiffness_and_damping(pair);
-                    let [a, b] = pair;
-                    c64::new(stiffness, omega * damping)
-                        * (motion(Some(a), force) - motion(Some(b), force))
+        let motion = |node: Node, force: usize| {
+            node.terms()
+                .map(|(i, weight)| weight * receptance[(i, force)])
+                .fold(c64::new(0.0, 0.0), |sum, part| sum + part)
+        };
+        let readings = self.outputs.iter().map(|output| self.reading(output));
+        let readings = readings.collect::<Result<Vec<Reading>, _>>()?;
+        let response = |reading: &Reading, force: usize| {
+            let [a, b] = reading.nodes.map(|node| motion(node, force));
+            let of_motion = |kind: FrfKind| kind.factor(omega) * (a - b);
+            match reading.form {
+                Form::Displacement => of_motion(FrfKind::Receptance),
+                Form::Velocity => of_motion(FrfKind::Mobility),
+                Form::Acceleration => of_motion(FrfKind::Accelerance),
+                Form::Members { stiffness, damping } => {
+                    c64::new(stiffness, omega * damping) * (a - b)
                 }
-                (OutputKind::Force, None) => zero,
-                (OutputKind::Pressure, _) => of_node(FrfKind::Mobility) * PRESSURE_UNIT_PA,
-                (OutputKind::Spool, _) => {
-                    let valve = self
-                        .valves
-                        .iter()
-                        .find(|v| Some(&v.name) == output.at.as_ref());
-                    motion(valve.map(crate::Valve::spool).as_ref(), force)
-                }
-                (OutputKind::Flow, _) => {
-                    let chamber = output.at.as_ref().and_then(|at| self.chamber(at));
-                    let of_valve = |valve: &crate::Valve| {
-                        let (cylinder, chamber) =
-                            chamber.filter(|(c, _)| c.name == valve.cylinder)?;
-                        let gain = valve.opening_gain(chamber, cylinder.pressures[chamber]);
-                        Some(motion(Some(&valve.spool()), force) * gain)
-                    };
-                    let flows = self.valves.iter().filter_map(of_valve);
-                    flows.fold(zero, |sum, flow| sum + flow)
-                }
-                (OutputKind::Roll, _) => {
-                    let body = output.at.as_ref().and_then(|at| self.body_of(at));
-                    motion(body.map(crate::Body::roll).as_ref(), force)
-                }
+                Form::Rate { scale, .. } => of_motion(FrfKind::Mobility) * scale,
+                Form::Orifice { gain, .. } => (a - b) * gain,
             }
         };
         Ok(Mat::from_fn(
             self.outputs.len(),
             self.dof_count(),
-            |row, force| response(&self.outputs[row], force),
+            |row, force| response(&readings[row], force),
         ))
     }
 }

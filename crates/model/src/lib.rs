@@ -40,6 +40,7 @@
 #[cfg(feature = "ndarray")]
 mod arrays;
 mod beam;
+mod between_samples;
 mod block;
 mod body;
 mod check;
@@ -48,36 +49,42 @@ mod error;
 mod file;
 mod frf;
 mod hydraulics;
+mod input;
 mod joined;
 mod matrices;
 mod model;
 mod modes;
 mod node;
+mod output;
 mod parameter;
 mod parts;
+mod pole_kind;
 mod refuse;
 mod sensitivity;
-mod serial;
+pub mod serial;
 mod travel;
 mod uncertainty;
 
 pub use beam::{Beam, BeamValue};
+pub use between_samples::BetweenSamples;
 pub use block::Block;
 pub use body::{Body, Point};
 pub use error::ModelError;
 pub use file::SCHEMA;
 pub use frf::{FrfKind, frequency_response};
 pub use hydraulics::{Cylinder, DriveValue, Edges, PRESSURE_UNIT_PA, Valve};
+pub use input::{Input, InputKind};
 pub use matrices::StructuralMatrices;
 pub use model::{Model, same_pair};
 pub use modes::{
     DampedMode, UndampedModes, damped_modes, damped_modes_of, state_matrix, undamped_modes,
 };
 pub use node::{BodyPoint, Node};
+pub use output::{Form, Output, OutputKind, Reading};
 pub use parameter::Parameter;
 pub use parts::{
-    BetweenSamples, DEFAULT_UNCERTAINTY, Damper, EffectEntry, GROUND, Input, InputKind, Load,
-    Location, Mass, Output, OutputKind, Pendulum, Spring,
+    DEFAULT_UNCERTAINTY, Damper, EffectEntry, GROUND, Load, Location, Mass, Pendulum, Spring,
 };
+pub use pole_kind::{PoleKind, pole_kinds};
 pub use sensitivity::{PoleSensitivity, pole_sensitivities, receptance_sensitivity};
 pub use uncertainty::NominalQuantity;

@@ -15,16 +15,16 @@ use faer::Mat;
 /// | K | `stiffness_matrix` | N/m | n × n |
 ///
 /// For rotation read kg m², N m s/rad and N m/rad.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StructuralMatrices {
     /// M, kg.
-    #[serde(serialize_with = "crate::serial::rows")]
+    #[serde(with = "crate::serial::rows")]
     pub mass_matrix: Mat<f64>,
     /// C, N s/m.
-    #[serde(serialize_with = "crate::serial::rows")]
+    #[serde(with = "crate::serial::rows")]
     pub damping_matrix: Mat<f64>,
     /// K, N/m.
-    #[serde(serialize_with = "crate::serial::rows")]
+    #[serde(with = "crate::serial::rows")]
     pub stiffness_matrix: Mat<f64>,
 }
 

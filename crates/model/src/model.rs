@@ -5,7 +5,7 @@ use faer::Mat;
 use crate::refuse::item;
 use crate::{
     Beam, Block, Body, Cylinder, Damper, EffectEntry, GROUND, Input, InputKind, Load, Mass,
-    ModelError, Node, Output, OutputKind, Pendulum, Spring, StructuralMatrices, Valve,
+    ModelError, Node, Output, Pendulum, Spring, StructuralMatrices, Valve,
 };
 
 /// A lumped model of any number of degrees of freedom, none included.
@@ -76,46 +76,6 @@ impl Model {
             .iter()
             .position(|&base| base == name)
             .map(Node::Base)
-    }
-
-    /// The two nodes whose difference an output reads: its node and the ground, or those of its members.
-    ///
-    /// # Errors
-    /// [`ModelError::UnknownNode`]; [`ModelError::Shape`] for a roll of what is no body.
-    pub fn output_nodes(&self, output: &Output) -> Result<[Node; 2], ModelError> {
-        let place = || item("output", &output.channel);
-        let ground = || GROUND.to_string();
-        let pair = match (&output.at, &output.between) {
-            (Some(at), _) if output.kind == OutputKind::Roll => {
-                let body = self.body_of(at).ok_or_else(|| ModelError::Shape {
-                    place: place(),
-                    found: format!("the roll of \"{at}\""),
-                    needed: "a body or a point of one".into(),
-                })?;
-                [body.roll(), ground()]
-            }
-            (Some(at), _) if output.kind == OutputKind::Spool => {
-                let valve = self.valves.iter().find(|valve| &valve.name == at);
-                let valve = valve.ok_or_else(|| ModelError::Shape {
-                    place: place(),
-                    found: format!("the spool of \"{at}\""),
-                    needed: "the name of a [[valve]]".into(),
-                })?;
-                [valve.spool(), ground()]
-            }
-            (Some(at), _) if matches!(output.kind, OutputKind::Pressure | OutputKind::Flow) => {
-                self.chamber(at).ok_or_else(|| ModelError::Shape {
-                    place: place(),
-                    found: format!("a pressure or a flow of \"{at}\""),
-                    needed: "a chamber of a [[cylinder]], such as \"name.p1\"".into(),
-                })?;
-                [at.clone(), ground()]
-            }
-            (Some(at), _) => [at.clone(), ground()],
-            (None, Some(pair)) => pair.clone(),
-            (None, None) => [ground(), ground()],
-        };
-        self.resolve_pair(&pair, place)
     }
 
     /// The place of a coordinate of a name.

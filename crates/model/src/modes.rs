@@ -8,22 +8,22 @@ use faer::{Mat, Side, c64};
 use crate::{ModelError, StructuralMatrices};
 
 /// Modes of the undamped structure, lowest first.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct UndampedModes {
     /// ω_r, rad/s; zero for a rigid-body mode.
     pub natural_freq_rad: Vec<f64>,
     /// ω_r / 2π, Hz.
     pub natural_freq_hz: Vec<f64>,
     /// Mode shapes as columns, mass-normalised (φᵀ M φ = 1), largest component positive. n × n.
-    #[serde(serialize_with = "crate::serial::rows")]
+    #[serde(with = "crate::serial::rows")]
     pub mode_shape: Mat<f64>,
 }
 
 /// One mode of the damped structure.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DampedMode {
     /// Eigenvalue λ, rad/s, with Im λ ≥ 0.
-    #[serde(serialize_with = "crate::serial::complex")]
+    #[serde(with = "crate::serial::complex")]
     pub eigenvalue: c64,
     /// |λ| / 2π, Hz.
     pub natural_freq_hz: f64,
@@ -32,7 +32,7 @@ pub struct DampedMode {
     /// −Re λ / |λ|; one for an overdamped mode, zero for λ = 0.
     pub damping_ratio: f64,
     /// Complex shape of the displacements, largest component 1. Length n.
-    #[serde(serialize_with = "crate::serial::complex_list")]
+    #[serde(with = "crate::serial::complex_list")]
     pub mode_shape: Vec<c64>,
 }
 

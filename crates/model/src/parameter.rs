@@ -3,7 +3,9 @@
 use crate::{BeamValue, DriveValue, Model};
 
 /// A value of the model file that the linear part of the plant depends on, by its place in the list.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Parameter {
     /// `value` of a mass.

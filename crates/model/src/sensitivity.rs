@@ -9,14 +9,14 @@ use crate::modes::balanced;
 use crate::{Model, ModelError, Parameter, StructuralMatrices, frequency_response, state_matrix};
 
 /// A pole, and its derivative with respect to each parameter in the order of [`Model::parameters`].
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PoleSensitivity {
     /// λ, rad/s, with Im λ ≥ 0.
-    #[serde(serialize_with = "crate::serial::complex")]
+    #[serde(with = "crate::serial::complex")]
     pub pole: c64,
     /// ∂λ/∂p, rad/s per unit of the parameter; `None` for a pole that is there more than once, which has no
     /// derivative.
-    #[serde(serialize_with = "crate::serial::complex_list_or_none")]
+    #[serde(with = "crate::serial::complex_list_or_none")]
     pub derivative: Option<Vec<c64>>,
 }
 

@@ -272,3 +272,16 @@ fn verify_sweep_balances() {
         );
     }
 }
+
+/// What the machine is made of is written with its values under their names.
+#[cfg(feature = "serde")]
+#[test]
+fn verify_models_are_written_with_their_values() {
+    let mold = simgap_mold::OneDof::published().unwrap();
+    let written = serde_json::to_value(mold).unwrap();
+    assert_eq!(written["mass_kg"], mold.mass_kg());
+    assert_eq!(written["stiffness"], mold.stiffness());
+    let leaf = simgap_mold::LeafSpring::steel(1.06, 0.2, 0.010).unwrap();
+    let written = serde_json::to_value(leaf).unwrap();
+    assert_eq!(written["thickness_m"], 0.010);
+}

@@ -100,19 +100,60 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// Every quantity.
+    pub const ALL: [Quantity; 7] = [
+        Quantity::Displacement,
+        Quantity::Velocity,
+        Quantity::Acceleration,
+        Quantity::Force,
+        Quantity::Pressure,
+        Quantity::Flow,
+        Quantity::Number,
+    ];
+
+    /// The kinds of its units for translation and for rotation; `None` for a number.
+    fn kinds(self) -> Option<[UnitKind; 2]> {
+        match self {
+            Quantity::Displacement => Some([UnitKind::Length, UnitKind::Angle]),
+            Quantity::Velocity => Some([UnitKind::Velocity, UnitKind::AngularVelocity]),
+            Quantity::Acceleration => Some([UnitKind::Acceleration, UnitKind::AngularAcceleration]),
+            Quantity::Force => Some([UnitKind::Force, UnitKind::Torque]),
+            Quantity::Pressure => Some([UnitKind::Pressure; 2]),
+            Quantity::Flow => Some([UnitKind::Flow; 2]),
+            Quantity::Number => None,
+        }
+    }
+
     /// Whether a unit of this kind measures the quantity.
     #[must_use]
     pub fn accepts(self, kind: UnitKind) -> bool {
-        let (translation, rotation) = match self {
-            Quantity::Displacement => (UnitKind::Length, UnitKind::Angle),
-            Quantity::Velocity => (UnitKind::Velocity, UnitKind::AngularVelocity),
-            Quantity::Acceleration => (UnitKind::Acceleration, UnitKind::AngularAcceleration),
-            Quantity::Force => (UnitKind::Force, UnitKind::Torque),
-            Quantity::Pressure => (UnitKind::Pressure, UnitKind::Pressure),
-            Quantity::Flow => (UnitKind::Flow, UnitKind::Flow),
-            Quantity::Number => return kind != UnitKind::Time,
+        match self.kinds() {
+            Some(kinds) => kinds.contains(&kind),
+            None => kind != UnitKind::Time,
+        }
+    }
+
+    /// The quantity that an SI symbol measures; [`Quantity::Number`] for `1` and what no model measures.
+    ///
+    /// ```
+    /// use simgap_record::Quantity;
+    /// assert_eq!(Quantity::of_si_symbol("rad/s"), Quantity::Velocity);
+    /// assert_eq!(Quantity::of_si_symbol("1"), Quantity::Number);
+    /// ```
+    #[must_use]
+    pub fn of_si_symbol(symbol: &str) -> Quantity {
+        let measured = |quantity: &Quantity| {
+            let mut kinds = quantity.kinds().into_iter().flatten();
+            kinds.any(|kind| kind.si_symbol() == symbol)
         };
-        kind == translation || kind == rotation
+        let found = Quantity::ALL.into_iter().find(measured);
+        found.unwrap_or(Quantity::Number)
+    }
+
+    /// Its SI symbol where the model rotates; `1` for a number.
+    #[must_use]
+    pub fn rotational_symbol(self) -> &'static str {
+        self.kinds().map_or("1", |[_, kind]| kind.si_symbol())
     }
 
     /// Some accepted symbols, for error messages.

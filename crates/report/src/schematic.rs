@@ -172,7 +172,9 @@ fn find<'a>(nodes: &'a [Node], name: &str) -> Option<&'a Node> {
 
 /// What joins two nodes, with its name; a point and its body have none.
 fn members_between<'a>(model: &'a Model, pair: &[String; 2]) -> Vec<(Shape, &'a str)> {
-    let springs = model.springs.iter().filter(|s| same_pair(&s.between, pair));
+    // The static stiffness of a beam is drawn with the beam.
+    let springs = model.springs.iter().filter(|s| !model.is_of_beam(s));
+    let springs = springs.filter(|s| same_pair(&s.between, pair));
     let dampers = model.dampers.iter().filter(|d| same_pair(&d.between, pair));
     let beams = model.beams.iter().filter(|b| same_pair(&b.between, pair));
     let cylinders = model
@@ -344,6 +346,20 @@ mod tests {
         let nodes = placed(&model);
         let told: Vec<(&str, usize)> = nodes.iter().map(|n| (n.name.as_str(), n.column)).collect();
         assert_eq!(told, [("ground", 0), ("table", 1), ("free", 2)]);
+    }
+
+    #[test]
+    fn verify_a_beam_is_drawn_once() {
+        let text = "schema = \"simgap-model/1\"\nname = \"leaf\"\n[[mass]]\nname = \"m\"\nvalue = 1.0\n\
+             [[beam]]\nname = \"leaf\"\nbetween = [\"m\", \"ground\"]\nlength = 1.0\nwidth = 0.1\nthickness = 0.01\n\
+             youngs_modulus = 2.1e11\ndensity = 7850.0\n\
+             [[output]]\nchannel = \"y\"\nkind = \"displacement\"\nat = \"m\"\n";
+        let svg = schematic_svg(&Model::from_toml(text).unwrap_or_default());
+        assert_eq!(
+            svg.matches("<title>leaf</title>").count(),
+            2,
+            "the picture and its beam"
+        );
     }
 
     #[test]

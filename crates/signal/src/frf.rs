@@ -5,12 +5,15 @@ use crate::{Complex64, SignalError};
 
 /// Estimated frequency response, bin by bin.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frf {
     /// Frequency of each bin, Hz.
     pub freq_hz: Vec<f64>,
     /// H1 estimate: unbiased by noise on the output, too small with noise on the input.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial"))]
     pub h1: Vec<Complex64>,
     /// H2 estimate: unbiased by noise on the input, too large with noise on the output.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial"))]
     pub h2: Vec<Complex64>,
     /// Coherence γ², 0 … 1: part of the output power that is linear in the input.
     pub coherence: Vec<f64>,

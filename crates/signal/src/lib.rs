@@ -36,6 +36,8 @@
 //! # Ok::<(), simgap_signal::SignalError>(())
 //! ```
 
+#[cfg(feature = "ndarray")]
+mod arrays;
 mod check;
 pub mod correlation;
 pub mod error;
@@ -46,6 +48,8 @@ pub mod noise;
 pub mod orders;
 pub mod peaks;
 mod real_fft;
+#[cfg(feature = "serde")]
+mod serial;
 pub mod spectrum;
 pub mod trend;
 pub mod welch;

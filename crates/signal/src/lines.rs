@@ -13,7 +13,7 @@ const SEPARABLE: f64 = 1e-6;
 
 /// One fitted line a cos(2πft) + b sin(2πft) = A cos(2πft + φ).
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Line {
     /// Frequency f as given, Hz.
     pub freq_hz: f64,
@@ -41,7 +41,7 @@ pub struct Line {
 ///
 /// Parameters are ordered mean, trend, a_1, b_1, a_2, b_2 …
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LineFit {
     /// The lines, in the order of the frequencies given.
     pub lines: Vec<Line>,

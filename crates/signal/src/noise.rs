@@ -14,7 +14,7 @@ const MEDIAN_TO_STD: f64 = 1.482_602_218_505_602;
 
 /// Two estimates of the standard deviation of white noise, and the one to use.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WhiteNoise {
     /// From sixth differences.
     pub by_differences: f64,

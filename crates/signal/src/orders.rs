@@ -53,7 +53,7 @@ pub fn fit_harmonics(
 
 /// A harmonic and its image about half the Nyquist frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ImagePair {
     /// Order k of the harmonic.
     pub order: usize,
@@ -65,7 +65,7 @@ pub struct ImagePair {
 
 /// Harmonics and images fitted together.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NyquistImages {
     /// One pair per order, from 1.
     pub pairs: Vec<ImagePair>,

@@ -7,7 +7,7 @@ use crate::{Complex64, SignalError, check};
 
 /// How peaks are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PeakOptions {
     /// Probability that a record of pure white noise yields any peak at all, between 0 and 1.
     pub false_alarm_probability: f64,
@@ -29,7 +29,7 @@ impl Default for PeakOptions {
 
 /// One spectral line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peak {
     /// Bin of the local maximum.
     pub bin: usize,

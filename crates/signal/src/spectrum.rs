@@ -19,7 +19,7 @@ use crate::{Complex64, SignalError, Trend, Window, check};
 /// | φ_k | `phase_rad` | rad, at the first sample | ⌊N/2⌋+1 |
 /// | a_0 | `window.coherent_gain()` | 1 | |
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spectrum {
     /// Frequency of each bin, Hz.
     pub freq_hz: Vec<f64>,
@@ -103,7 +103,7 @@ pub fn spectrum(
 /// The sum is exact for the rectangular window; with any other window it holds in the mean for
 /// noise.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Psd {
     /// Frequency of each bin, Hz.
     pub freq_hz: Vec<f64>,

@@ -2,7 +2,7 @@
 
 /// What to take out of a record (or of each segment) before it is windowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Trend {
     /// Nothing.
     Keep,

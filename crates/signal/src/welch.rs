@@ -7,7 +7,7 @@ use crate::{Complex64, SignalError, Trend, Window, check};
 
 /// How a record is cut into segments.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WelchOptions {
     /// Samples of a segment; the bins are fs / `segment_len` apart.
     pub segment_len: usize,
@@ -102,6 +102,7 @@ pub fn welch(
 
 /// Averaged power and cross spectral densities of two records.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CrossSpectra {
     /// Frequency of each bin, Hz.
     pub freq_hz: Vec<f64>,
@@ -110,6 +111,7 @@ pub struct CrossSpectra {
     /// Density of the second record, unit²/Hz.
     pub yy: Vec<f64>,
     /// Cross density ⟨conj(X) Y⟩, product of the units per Hz; its phase is that of y ahead of x.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial"))]
     pub xy: Vec<Complex64>,
     /// Distance of two bins, Hz.
     pub bin_width_hz: f64,

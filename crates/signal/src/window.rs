@@ -19,7 +19,7 @@ use crate::SignalError;
 /// `FlatTop` reads the amplitude of a line between bins within 0.18 %; `Hann` is the usual
 /// choice for averaged spectra; `BlackmanHarris` keeps leakage below -92 dB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Window {
     /// All ones: best noise bandwidth, worst leakage.
     Rectangular,

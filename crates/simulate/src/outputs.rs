@@ -2,13 +2,23 @@
 
 use simgap_integrate::exact::lanes::{LANES, LaneSnapshot, Pack};
 use simgap_integrate::exact::{Element, Snapshot};
-use simgap_model::{Cylinder, Model, ModelError, Node, OutputKind, PRESSURE_UNIT_PA};
+use simgap_model::{Form, Model, ModelError, Node, PRESSURE_UNIT_PA, Reading};
 
 use crate::prepared::Prepared;
 
+/// What is made of the difference of two nodes.
+#[derive(Clone, Copy, PartialEq)]
+enum Read {
+    Displacement,
+    Velocity,
+    Acceleration,
+    /// Stiffness times displacement, damping times velocity, the forces of elements and an offset.
+    Sum,
+}
+
 /// How one output is read off a sample.
 pub(crate) struct OutputPlan {
-    kind: OutputKind,
+    read: Read,
     a: Node,
     b: Node,
     pub(crate) stiffness: f64,
@@ -50,7 +60,7 @@ impl LaneBase<'_> {
 impl OutputPlan {
     /// Whether two outputs are read off alike, from members of other values.
     pub(crate) fn is_alike(&self, other: &OutputPlan) -> bool {
-        (self.kind, self.a, self.b) == (other.kind, other.a, other.b)
+        (self.read, self.a, self.b) == (other.read, other.a, other.b)
             && self.elements == other.elements
             && self.offset == other.offset
     }
@@ -65,13 +75,11 @@ impl OutputPlan {
     ) -> Pack {
         let displacement = || self.across_lanes(at.displacement, |i| at.base_displacement[i]);
         let velocity = || self.across_lanes(at.velocity, |i| at.base_velocity[i]);
-        match self.kind {
-            OutputKind::Displacement | OutputKind::Roll | OutputKind::Spool => displacement(),
-            OutputKind::Velocity => velocity(),
-            OutputKind::Acceleration => {
-                self.across_lanes(at.acceleration, |i| base.acceleration(i))
-            }
-            OutputKind::Force | OutputKind::Pressure | OutputKind::Flow => {
+        match self.read {
+            Read::Displacement => displacement(),
+            Read::Velocity => velocity(),
+            Read::Acceleration => self.across_lanes(at.acceleration, |i| base.acceleration(i)),
+            Read::Sum => {
                 let (x, v) = (displacement(), velocity());
                 let mut on_top = Pack([-0.0; LANES]);
                 for &(i, sign) in &self.elements {
@@ -101,7 +109,7 @@ impl OutputPlan {
     }
 
     pub(crate) fn needs_acceleration(&self) -> bool {
-        self.kind == OutputKind::Acceleration
+        self.read == Read::Acceleration
     }
 
     pub(crate) fn read(
@@ -111,13 +119,11 @@ impl OutputPlan {
         base: &BaseMotion<'_>,
     ) -> f64 {
         let across = |dofs: &[f64], bases: &[f64]| across([self.a, self.b], dofs, bases);
-        match self.kind {
-            OutputKind::Displacement | OutputKind::Roll | OutputKind::Spool => {
-                across(at.displacement, base.displacement)
-            }
-            OutputKind::Velocity => across(at.velocity, base.velocity),
-            OutputKind::Acceleration => across(acceleration, base.acceleration),
-            OutputKind::Force | OutputKind::Pressure | OutputKind::Flow => {
+        match self.read {
+            Read::Displacement => across(at.displacement, base.displacement),
+            Read::Velocity => across(at.velocity, base.velocity),
+            Read::Acceleration => across(acceleration, base.acceleration),
+            Read::Sum => {
                 let members = self.stiffness * across(at.displacement, base.displacement)
                     + self.damping * across(at.velocity, base.velocity);
                 let on_top: f64 = self
@@ -137,75 +143,64 @@ pub(crate) fn output_plans(
     elements: &[Element],
     carried: &[bool],
 ) -> Result<Vec<OutputPlan>, ModelError> {
-    let mut plans = Vec::with_capacity(model.outputs.len());
-    for output in &model.outputs {
-        let [a, b] = model.output_nodes(output)?;
-        // A force is positive when a is displaced from b in the positive direction, and so is the
-        // force of a member whichever way round it is written.
-        let [stiffness, damping] = match &output.between {
-            Some(pair) => model.stiffness_and_damping(pair),
-            None => [0.0; 2],
-        };
-        let joined = elements.iter().enumerate().filter_map(|(i, element)| {
-            if !carried[i] {
-                None
-            } else if element.port.force == [a, b] {
-                Some((i, 1.0))
-            } else if element.port.force == [b, a] {
-                Some((i, -1.0))
-            } else {
-                None
-            }
-        });
-        let plan = OutputPlan {
-            kind: output.kind,
-            a,
-            b,
-            stiffness,
-            damping,
+    let plan = |output| {
+        let Reading { nodes, form } = model.reading(output)?;
+        let plain = |read: Read| OutputPlan {
+            read,
+            a: nodes[0],
+            b: nodes[1],
+            stiffness: 0.0,
+            damping: 0.0,
             offset: 0.0,
-            elements: joined.collect(),
+            elements: vec![],
         };
-        let chamber = output.at.as_ref().and_then(|at| model.chamber(at));
-        plans.push(match (output.kind, chamber) {
-            (OutputKind::Pressure, Some((cylinder, chamber))) => OutputPlan {
-                damping: PRESSURE_UNIT_PA,
-                offset: cylinder.pressures[chamber],
-                ..plan
+        Ok(match form {
+            Form::Displacement => plain(Read::Displacement),
+            Form::Velocity => plain(Read::Velocity),
+            Form::Acceleration => plain(Read::Acceleration),
+            Form::Members { stiffness, damping } => OutputPlan {
+                stiffness,
+                damping,
+                elements: joined(elements, carried, nodes),
+                ..plain(Read::Sum)
             },
-            (OutputKind::Flow, Some((cylinder, chamber))) => {
-                flow_plan(model, elements, plan, cylinder, chamber)
-            }
-            _ => plan,
-        });
-    }
-    Ok(plans)
+            Form::Rate { scale, offset } => OutputPlan {
+                damping: scale,
+                offset,
+                ..plain(Read::Sum)
+            },
+            Form::Orifice { gain, chamber } => OutputPlan {
+                stiffness: gain,
+                elements: of_orifice(elements, nodes[0], chamber),
+                ..plain(Read::Sum)
+            },
+        })
+    };
+    model.outputs.iter().map(plan).collect()
 }
 
-/// The flow of the valve of a cylinder into a chamber: what is proportional to its spool, and what its orifice adds.
-fn flow_plan(
-    model: &Model,
-    elements: &[Element],
-    plan: OutputPlan,
-    cylinder: &Cylinder,
-    chamber: usize,
-) -> OutputPlan {
-    let valve = model.valves.iter().find(|v| v.cylinder == cylinder.name);
-    let spool = valve.and_then(|valve| Some((valve, model.node(&valve.spool())?)));
-    let Some((valve, spool)) = spool else {
-        return OutputPlan { b: plan.a, ..plan };
-    };
+/// The members among the elements between two nodes. A force is positive when a is displaced from b in the positive
+/// direction, and so is the force of a member whichever way round it is written.
+fn joined(elements: &[Element], carried: &[bool], [a, b]: [Node; 2]) -> Vec<(usize, f64)> {
+    let members = elements.iter().enumerate().filter(|(i, _)| carried[*i]);
+    let joined = members.filter_map(|(i, element)| {
+        if element.port.force == [a, b] {
+            Some((i, 1.0))
+        } else if element.port.force == [b, a] {
+            Some((i, -1.0))
+        } else {
+            None
+        }
+    });
+    joined.collect()
+}
+
+/// What the orifice of a valve adds to the flow into a chamber that is proportional to the spool.
+fn of_orifice(elements: &[Element], spool: Node, chamber: Node) -> Vec<(usize, f64)> {
     let is_own = |element: &Element| {
-        element.port.displacement[0] == spool && element.port.force[0] == plan.a
+        element.port.displacement[0] == spool && element.port.force[0] == chamber
     };
     let own = elements.iter().position(is_own);
-    OutputPlan {
-        a: spool,
-        stiffness: valve.opening_gain(chamber, cylinder.pressures[chamber]),
-        elements: own
-            .map(|i| (i, -1.0 / PRESSURE_UNIT_PA))
-            .into_iter()
-            .collect(),
-        ..plan
-    }
+    let own = own.map(|i| (i, -1.0 / PRESSURE_UNIT_PA));
+    own.into_iter().collect()
 }

@@ -182,25 +182,13 @@ impl Run {
 /// What an input without a gain must measure.
 #[must_use]
 pub fn input_quantity(kind: InputKind) -> Quantity {
-    match kind {
-        InputKind::Force => Quantity::Force,
-        InputKind::Displacement => Quantity::Displacement,
-        InputKind::Command | InputKind::SetPoint => Quantity::Number,
-    }
+    Quantity::of_si_symbol(kind.unit())
 }
 
 /// What an output without a gain must measure.
 #[must_use]
 pub fn output_quantity(kind: OutputKind) -> Quantity {
-    match kind {
-        OutputKind::Displacement | OutputKind::Roll => Quantity::Displacement,
-        OutputKind::Velocity => Quantity::Velocity,
-        OutputKind::Acceleration => Quantity::Acceleration,
-        OutputKind::Force => Quantity::Force,
-        OutputKind::Pressure => Quantity::Pressure,
-        OutputKind::Spool => Quantity::Number,
-        OutputKind::Flow => Quantity::Flow,
-    }
+    Quantity::of_si_symbol(kind.unit())
 }
 
 /// Unit of an output in the model: SI, as a length or as an angle according to the record's column;
@@ -209,15 +197,6 @@ pub fn output_quantity(kind: OutputKind) -> Quantity {
 pub fn output_unit(output: &Output, record: &Record) -> &'static str {
     match record.channel(&output.channel) {
         Some(channel) if output.gain.is_none() => channel.unit.kind().si_symbol(),
-        _ => match output.kind {
-            OutputKind::Displacement => "m",
-            OutputKind::Velocity => "m/s",
-            OutputKind::Acceleration => "m/s^2",
-            OutputKind::Force => "N",
-            OutputKind::Roll => "rad",
-            OutputKind::Pressure => "Pa",
-            OutputKind::Spool => "1",
-            OutputKind::Flow => "m^3/s",
-        },
+        _ => output.kind.unit(),
     }
 }

@@ -7,6 +7,7 @@ mod several;
 mod sizes;
 
 use simgap_model::{InputKind, Model, OutputKind, damped_modes_of};
+use simgap_record::Quantity;
 
 use crate::BlindError;
 use crate::random::Random;
@@ -73,30 +74,22 @@ fn finish(random: &mut Random, model: Model, sizes: &Sizes) -> Result<Plant, Bli
     })
 }
 
-/// Unit of a channel of the plant.
+/// Unit of an output of the plant.
 pub(crate) fn output_unit(model: &Model, kind: OutputKind) -> &'static str {
-    let rotates = !model.pendulums.is_empty();
-    match (kind, rotates) {
-        (OutputKind::Displacement, false) => "m",
-        (OutputKind::Velocity, false) => "m/s",
-        (OutputKind::Acceleration, false) => "m/s^2",
-        (OutputKind::Force, false) => "N",
-        (OutputKind::Roll, _) | (OutputKind::Displacement, true) => "rad",
-        (OutputKind::Velocity, true) => "rad/s",
-        (OutputKind::Acceleration, true) => "rad/s^2",
-        (OutputKind::Force, true) => "N m",
-        (OutputKind::Pressure, _) => "Pa",
-        (OutputKind::Flow, _) => "m^3/s",
-        (OutputKind::Spool, _) => "1",
-    }
+    unit_of(model, kind.unit())
 }
 
 /// Unit of an input of the plant.
 pub(crate) fn input_unit(model: &Model, kind: InputKind) -> &'static str {
-    match kind {
-        InputKind::Force => output_unit(model, OutputKind::Force),
-        InputKind::Displacement => output_unit(model, OutputKind::Displacement),
-        InputKind::Command | InputKind::SetPoint => "1",
+    unit_of(model, kind.unit())
+}
+
+/// The unit of rotation in the place of that of translation where the plant rotates.
+fn unit_of(model: &Model, symbol: &'static str) -> &'static str {
+    if model.pendulums.is_empty() {
+        symbol
+    } else {
+        Quantity::of_si_symbol(symbol).rotational_symbol()
     }
 }
 

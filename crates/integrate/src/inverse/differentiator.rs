@@ -231,6 +231,7 @@ pub fn central_difference(values: &[f64], time_step_s: f64, order: usize) -> Res
 
 /// Velocity and acceleration that go with a sampled displacement.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DerivedMotion {
     /// m/s, one per sample.
     pub velocity: Vec<f64>,

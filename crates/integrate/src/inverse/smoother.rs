@@ -91,6 +91,7 @@ impl NoiseModel {
 
 /// Motion estimated from the whole record, with its standard deviations.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SmoothedMotion {
     /// m, one per sample.
     pub displacement: Vec<f64>,

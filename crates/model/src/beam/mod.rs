@@ -77,7 +77,9 @@ fn is_zero(value: &f64) -> bool {
 }
 
 /// A value of a beam that its matrices depend on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum BeamValue {
     /// L.

@@ -195,30 +195,13 @@ impl Model {
         Ok(())
     }
 
-    /// What an input does to the coordinates: coordinate and weight. Empty for the displacement of a base.
-    ///
-    /// # Errors
-    /// [`ModelError::UnknownNode`] and [`ModelError::Shape`] for blocks that are joined to nothing.
-    pub fn input_terms(&self, input: usize) -> Result<Vec<(usize, f64)>, ModelError> {
-        let Some(own) = self.inputs.get(input) else {
-            return Ok(vec![]);
-        };
-        let at = |node: Option<Node>| node.into_iter().flat_map(Node::terms).collect();
-        Ok(match own.kind {
-            InputKind::Force => at(self.node(&own.at)),
-            InputKind::Displacement => vec![],
-            InputKind::Command => {
-                let valve = self.valves.iter().find(|valve| valve.name == own.at);
-                at(valve.and_then(|valve| self.node(&valve.spool())))
-            }
-            InputKind::SetPoint => {
-                let mut terms = vec![];
-                for (i, weight, signal) in self.actions()? {
-                    let own = signal.input.iter().filter(|(k, _)| *k == input);
-                    terms.extend(own.map(|(_, value)| (i, weight * value)));
-                }
-                terms
-            }
-        })
+    /// What a set point does to the coordinates, by its place among the inputs: coordinate and weight.
+    pub(crate) fn set_point_terms(&self, input: usize) -> Result<Vec<(usize, f64)>, ModelError> {
+        let mut terms = vec![];
+        for (i, weight, signal) in self.actions()? {
+            let own = signal.input.iter().filter(|(k, _)| *k == input);
+            terms.extend(own.map(|(_, value)| (i, weight * value)));
+        }
+        Ok(terms)
     }
 }

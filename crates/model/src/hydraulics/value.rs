@@ -3,7 +3,9 @@
 use crate::{Model, ModelError, StructuralMatrices};
 
 /// A value of a cylinder, a valve or a block.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum DriveValue {
     /// β of a cylinder.

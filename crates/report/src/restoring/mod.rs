@@ -19,8 +19,7 @@ use faer::Mat;
 use simgap_diagnose::{CheckSeries, Diagnosis, PlaceMotion};
 use simgap_integrate::exact::matrix_exponential;
 use simgap_model::{
-    Location, Model, Node, Output, OutputKind, PRESSURE_UNIT_PA, StructuralMatrices, same_pair,
-    state_matrix,
+    Form, Location, Model, Node, Output, StructuralMatrices, same_pair, state_matrix,
 };
 
 use simgap_signal::noise::noise_std_by_differences;
@@ -277,17 +276,16 @@ fn accelerations(structure: &StructuralMatrices, ends: &[Node; 2]) -> Option<Vec
 fn row(model: &Model, output: &Output, at: &Location, rate: &Mat<f64>) -> Option<Vec<f64>> {
     let n = model.dof_count();
     let mut row = vec![0.0; 2 * n + 1];
-    if output.kind == OutputKind::Force {
-        let pair = output.between.as_ref()?;
-        let nodes = [model.node(&pair[0])?, model.node(&pair[1])?];
-        let mut add = |offset: usize, value: f64| {
-            for (node, sign) in nodes.iter().zip([1.0, -1.0]) {
-                for (i, weight) in node.terms() {
-                    row[offset + i] += sign * weight * value;
-                }
+    let reading = model.reading(output).ok()?;
+    let mut add = |offset: usize, value: f64| {
+        for (node, sign) in reading.nodes.iter().zip([1.0, -1.0]) {
+            for (i, weight) in node.terms() {
+                row[offset + i] += sign * weight * value;
             }
-        };
-        let [stiffness, damping] = model.stiffness_and_damping(pair);
+        }
+    };
+    if let Form::Members { stiffness, damping } = reading.form {
+        let pair = output.between.as_ref()?;
         add(0, stiffness);
         add(n, damping);
         if let Location::Between(place) = at
@@ -297,22 +295,22 @@ fn row(model: &Model, output: &Output, at: &Location, rate: &Mat<f64>) -> Option
         }
         return Some(row);
     }
-    let [node, _] = model.output_nodes(output).ok()?;
+    let [node, _] = reading.nodes;
     if matches!(node, Node::Ground | Node::Base(_)) {
         return None;
     }
-    for (i, weight) in node.terms() {
-        match output.kind {
-            OutputKind::Displacement | OutputKind::Roll | OutputKind::Spool => row[i] += weight,
-            OutputKind::Pressure => row[n + i] += weight * PRESSURE_UNIT_PA,
-            OutputKind::Velocity => row[n + i] += weight,
-            OutputKind::Acceleration => {
+    match reading.form {
+        Form::Displacement => add(0, 1.0),
+        Form::Velocity => add(n, 1.0),
+        Form::Rate { scale, .. } => add(n, scale),
+        Form::Acceleration => {
+            for (i, weight) in node.terms() {
                 for (j, value) in row.iter_mut().enumerate() {
                     *value += weight * rate[(n + i, j)];
                 }
             }
-            OutputKind::Force | OutputKind::Flow => return None,
         }
+        Form::Members { .. } | Form::Orifice { .. } => return None,
     }
     Some(row)
 }

@@ -1,6 +1,6 @@
 //! Boxes with names, and what is written beside them.
 
-use simgap_model::{InputKind, Model};
+use simgap_model::Model;
 
 use crate::chart::NEUTRAL_COLOURS;
 use crate::markup::escape;
@@ -41,12 +41,7 @@ pub(super) fn driven(model: &Model, name: &str, [x, y]: [f64; 2], [w, h]: [f64; 
     let drives = model.inputs.iter().filter(|input| input.at == name);
     for (k, input) in drives.enumerate() {
         let above = y - h / 2.0 - 10.0 - 15.0 * k as f64;
-        let kind = match input.kind {
-            InputKind::Force => "force",
-            InputKind::Displacement => "displacement",
-            InputKind::Command => "command",
-            InputKind::SetPoint => "set point",
-        };
+        let kind = input.kind.name().replace('_', " ");
         text.push_str(&format!(
             "<path d=\"M{} {above}h24m-6 -4l6 4l-6 4\"/>",
             x - w / 2.0

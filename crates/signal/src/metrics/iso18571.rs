@@ -29,7 +29,7 @@ const FEWEST: usize = 11;
 
 /// Grade of a total score in ISO/TS 18571.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Grade {
     /// Up to 0.58.
     Poor,
@@ -43,7 +43,7 @@ pub enum Grade {
 
 /// Scores from 0 (no agreement) to 1 (identical curves).
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Iso18571 {
     /// Corridor score Z.
     pub corridor: f64,

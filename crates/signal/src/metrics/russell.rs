@@ -7,7 +7,7 @@ use crate::SignalError;
 
 /// Russell's magnitude, phase and comprehensive error; all zero for a perfect prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Russell {
     /// Signed logarithmic magnitude error; positive when the prediction is too large.
     pub magnitude: f64,

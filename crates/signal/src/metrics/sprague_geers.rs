@@ -6,7 +6,7 @@ use crate::{SignalError, check};
 
 /// Sprague-Geers magnitude, phase and comprehensive error; all zero for a perfect prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpragueGeers {
     /// Relative excess of the predicted over the measured root mean square (signed).
     pub magnitude: f64,

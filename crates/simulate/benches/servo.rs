@@ -1,0 +1,225 @@
+//! A hydraulic axis of ten states against plants of two masses, 60 s at 1 kHz.
+//!
+//! `cargo bench -p simgap-simulate --bench servo`; the items counted are samples times sets. The axis has two chambers,
+//! a spool, a filter of second order on the measured position and a controller of second order; both orifices are solved in every
+//! step. The two masses are linear, or have dry friction and a cubic spring.
+//!
+//! What the axis costs beside the others is printed first: the plants take turns in one run, so that whatever else the
+//! machine does meets all of them, and the shortest time of each counts.
+#![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
+
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+
+use divan::counter::ItemsCount;
+use simgap_effects::{Placed, find};
+use simgap_model::{Location, Model};
+use simgap_simulate::{Job, Mended, Run, Simulator, predict_all};
+
+const SAMPLES: usize = 60_000;
+const STEP_S: f64 = 1e-3;
+
+const AXIS: &str = r#"schema = "simgap-model/1"
+name = "axis"
+[[mass]]
+name = "table"
+value = 1000.0
+[[damper]]
+name = "guide"
+between = ["table", "ground"]
+damping = 20000.0
+[[cylinder]]
+name = "drive"
+between = ["table", "ground"]
+areas = [2e-3, 1.5e-3]
+dead_volumes = [1e-4, 1e-4]
+stroke = 0.2
+bulk_modulus = 1.4e9
+leakage = 5e-12
+pressures = [9e6, 12e6]
+[[valve]]
+name = "servo"
+cylinder = "drive"
+from = "controller"
+rated_flow = 6.6667e-4
+rated_drop = 3.5e6
+natural_freq = 25.0
+damping_ratio = 0.7
+supply = 21e6
+[[block]]
+name = "filter"
+numerator = [1.0]
+denominator = [1e-5, 5e-3, 1.0]
+plus = ["table"]
+[[block]]
+name = "controller"
+numerator = [8.0, 4.0]
+denominator = [0.005, 1.0, 0.0]
+minus = ["filter"]
+[[input]]
+channel = "u"
+kind = "set_point"
+at = "controller"
+[[output]]
+channel = "y"
+kind = "displacement"
+at = "table"
+"#;
+
+const TWO_MASSES: &str = r#"schema = "simgap-model/1"
+name = "two masses"
+[[mass]]
+name = "table"
+value = 1.0
+[[mass]]
+name = "arm"
+value = 0.5
+[[spring]]
+name = "a"
+between = ["table", "ground"]
+stiffness = 900.0
+[[damper]]
+name = "a"
+between = ["table", "ground"]
+damping = 1.4
+[[spring]]
+name = "b"
+between = ["arm", "table"]
+stiffness = 900.0
+[[damper]]
+name = "b"
+between = ["arm", "table"]
+damping = 0.6
+[[input]]
+channel = "u"
+kind = "force"
+at = "table"
+[[output]]
+channel = "y"
+kind = "displacement"
+at = "arm"
+"#;
+
+/// What is simulated.
+#[derive(Debug, Clone, Copy)]
+enum Plant {
+    TwoMasses,
+    TwoMassesFrictionAndCubic,
+    ServoAxis,
+}
+
+use Plant::{ServoAxis, TwoMasses, TwoMassesFrictionAndCubic};
+
+fn run(amplitude: f64) -> Run {
+    let wave = |k: usize| {
+        let t = STEP_S * k as f64;
+        amplitude * ((TAU * 1.3 * t).sin() + 0.5 * (TAU * 4.1 * t).sin())
+    };
+    Run {
+        name: "made here".into(),
+        start_s: 0.0,
+        time_step_s: STEP_S,
+        len: SAMPLES,
+        first_index: 0,
+        inputs: vec![(0..SAMPLES).map(wave).collect()],
+        measured: vec![None],
+        mended: Mended::default(),
+    }
+}
+
+/// A set whose values are off by some per cent.
+fn set(plant: Plant, share: f64) -> Simulator {
+    let size = 1.0 + 0.05 * share;
+    let between = |a: &str| Location::Between([a.into(), "ground".into()]);
+    let place = |kind: &str, at: Location, value: f64| {
+        Placed::new(find(kind).unwrap(), at, vec![value * size])
+    };
+    let (text, effects) = match plant {
+        TwoMasses => (
+            TWO_MASSES,
+            vec![place("stiffness_error", between("table"), 1.0)],
+        ),
+        TwoMassesFrictionAndCubic => (
+            TWO_MASSES,
+            vec![
+                place("coulomb_friction", between("table"), 1.5),
+                place("cubic_stiffness", between("table"), 2e6),
+            ],
+        ),
+        ServoAxis => {
+            let chambers = Location::Between(["drive.p1".into(), "drive.p2".into()]);
+            (AXIS, vec![place("bulk_modulus", chambers, 0.9)])
+        }
+    };
+    Simulator::new(&Model::from_toml(text).unwrap(), &effects, 1).unwrap()
+}
+
+fn amplitude(plant: Plant) -> f64 {
+    match plant {
+        ServoAxis => 0.002,
+        TwoMasses | TwoMassesFrictionAndCubic => 12.0,
+    }
+}
+
+/// Rounds of the comparison, in each of which every plant is simulated once.
+const ROUNDS: usize = 15;
+
+/// Prints what each plant costs per sample and set, and the axis over the others, for one set and for eight in lanes.
+fn compared() {
+    let plants = [TwoMasses, TwoMassesFrictionAndCubic, ServoAxis];
+    for count in [1, 8] {
+        let runs = plants.map(|plant| run(amplitude(plant)));
+        let sets = plants.map(|plant| -> Vec<Simulator> {
+            (0..count)
+                .map(|k| set(plant, k as f64 / count as f64))
+                .collect()
+        });
+        let mut least = [Duration::MAX; 3];
+        for _ in 0..ROUNDS {
+            for (k, least) in least.iter_mut().enumerate() {
+                let job = |simulator| Job {
+                    simulator,
+                    run: &runs[k],
+                    initial: &[],
+                    smooth: false,
+                };
+                let jobs: Vec<Job<'_>> = sets[k].iter().map(job).collect();
+                let begun = Instant::now();
+                divan::black_box(predict_all(&jobs));
+                *least = (*least).min(begun.elapsed());
+            }
+        }
+        let ns = least.map(|time| time.as_secs_f64() * 1e9 / (SAMPLES * count) as f64);
+        for (plant, ns) in plants.iter().zip(ns) {
+            println!("{count} set(s), {plant:?}: {ns:.1} ns per sample and set");
+        }
+        println!(
+            "{count} set(s): the axis costs {:.2} times the two masses, {:.2} times those with friction and a cubic spring",
+            ns[2] / ns[0],
+            ns[2] / ns[1]
+        );
+    }
+}
+
+#[divan::bench(args = [TwoMasses, TwoMassesFrictionAndCubic, ServoAxis], consts = [1, 8], sample_count = 10)]
+fn sets<const SETS: usize>(bencher: divan::Bencher<'_, '_>, plant: Plant) {
+    let run = run(amplitude(plant));
+    let sets: Vec<Simulator> = (0..SETS)
+        .map(|k| set(plant, k as f64 / SETS as f64))
+        .collect();
+    let job = |simulator| Job {
+        simulator,
+        run: &run,
+        initial: &[],
+        smooth: false,
+    };
+    let jobs: Vec<Job<'_>> = sets.iter().map(job).collect();
+    bencher
+        .counter(ItemsCount::new(SAMPLES * SETS))
+        .bench_local(|| predict_all(&jobs));
+}
+
+fn main() {
+    compared();
+    divan::main();
+}
