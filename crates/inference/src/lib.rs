@@ -19,6 +19,7 @@ mod coincidence;
 mod marginal_likelihood;
 mod model_posterior;
 mod model_space;
+mod motion;
 pub mod noise_model;
 mod other;
 mod proposals;

@@ -16,15 +16,14 @@ use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, name, rank, remove};
+use crate::motion;
 use crate::noise_model::NOISE_KNOWN;
 use crate::other::RELEVANT_SHARE;
 use crate::search::Search;
 
 /// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
-/// name, nor one, but for a wrong nominal parameter, that moves every output by less than this share of its motion, rms;
-const OF_MOTION: f64 = 0.003;
-/// nor one without which no more is left than no set is expected to explain; nor one beside others that explains less than this
-/// share of what is left above the noise, mean square.
+/// name, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
+/// expected to explain; nor one beside others that explains less than this share of what is left above the noise, mean square.
 const OF_REST: f64 = 0.5;
 /// Log odds within which effects cannot be told apart: one to twenty.
 const INDISTINGUISHABLE: f64 = 3.0;
@@ -148,8 +147,7 @@ impl Relevance {
         if is_bent(without) && !is_bent(with) {
             return true;
         }
-        let moves = moved.iter().zip(&self.motion);
-        let moves = moves.map(|(by, motion)| *by > OF_MOTION * motion);
+        let moves = motion::is_enough(moved, &self.motion);
         let noise = search
             .noise_of(with)
             .into_iter()
@@ -286,18 +284,7 @@ fn moved(
         &remove(&set.fit.estimate, index, search.nominal),
         &held,
     )?;
-    let runs = || set.fit.discrepancy.iter().zip(&rest.discrepancy);
-    let channels = 0..search.problem.model.outputs.len();
-    let of_channel = channels.map(|c| {
-        let (mut square, mut count) = (0.0, 0.0);
-        for (with, without) in runs() {
-            let pairs = with[c].iter().zip(&without[c]);
-            square += pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-            count += with[c].len() as f64;
-        }
-        (square / f64::max(count, 1.0)).sqrt()
-    });
-    Ok(of_channel.collect())
+    Ok(motion::between(&set.fit, &rest))
 }
 
 /// Squared discrepancy of each channel that a set explains and another does not.

@@ -9,8 +9,8 @@
 //! the best set: each effect removed, exchanged, grown, shrunk; one more added; rescaled; until it stays
 //! ```
 //!
-//! A stage is left out where the best set leaves nothing but noise and no candidate's score could pay for its prior and for the
-//! values that it adjusts.
+//! A stage is left out where the best set leaves nothing but noise and no candidate promises to be worth a name: its score pays
+//! for its prior and for the values that it adjusts, it moves an output by enough, and a fit keeps it.
 
 use std::collections::BTreeSet;
 
@@ -159,7 +159,7 @@ impl<'a> Search<'a> {
         {
             return Ok(true);
         }
-        Ok(self.leaves_noise(best) && self.most_promising(best)? < 0.0)
+        Ok(self.leaves_noise(best) && !self.is_promising(best)?)
     }
 
     /// What no set beyond this one is expected to explain, mean square of each channel: the accuracy of the simulation, noise

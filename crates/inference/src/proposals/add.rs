@@ -1,5 +1,7 @@
 //! A set with one more effect, from the scores of all candidates.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 use simgap_effects::{LINES, SiteScale};
 use simgap_estimate::{
@@ -7,7 +9,10 @@ use simgap_estimate::{
 };
 use simgap_model::Location;
 
-use crate::candidate_model::{CandidateModel, add_scored, is_of, name, prior_score, rank};
+use crate::candidate_model::{
+    CandidateModel, add_scored, is_nominal, is_of, name, prior_score, rank,
+};
+use crate::motion;
 use crate::search::Search;
 
 /// Steps of a rough fit.
@@ -42,12 +47,12 @@ impl Search<'_> {
         Ok(self.fit_all(&starts, linear))
     }
 
-    /// The most that a further effect promises to bring: its gain, less its prior and what its values cost that the
-    /// gain lets them be known by, ½ ln(1 + 2 gain) each.
-    pub(crate) fn most_promising(&self, set: &CandidateModel) -> Result<f64, EstimateError> {
+    /// Whether a further effect promises to make a set likelier, and to be worth a name: its gain is above its prior and what its
+    /// values cost that the gain lets them be known by, ½ ln(1 + 2 gain) each, it moves an output by enough, and a fit keeps it.
+    pub(crate) fn is_promising(&self, set: &CandidateModel) -> Result<bool, EstimateError> {
         let linear = linearise_at(self.problem, &set.fit, &self.options)?;
         let runs = self.problem.runs.len();
-        let promises = self.scores(set, &linear).into_iter().map(|score| {
+        let pays = |score: &Score| {
             let effect = score.start.effect;
             let parameters = effect.parameters().iter().enumerate();
             let adjusted = parameters.filter(|(k, _)| !effect.is_chosen(*k));
@@ -55,9 +60,40 @@ impl Search<'_> {
                 .map(|(_, parameter)| if parameter.per_record { runs } else { 1 })
                 .sum();
             let known = 0.5 * values as f64 * (2.0 * score.gain.max(0.0)).ln_1p();
-            score.gain + self.space.log_prior_of(effect) - known
-        });
-        Ok(promises.fold(f64::NEG_INFINITY, f64::max))
+            score.gain + self.space.log_prior_of(effect) - known >= 0.0
+        };
+        let std = self.problem.output_std();
+        let held = FitOptions {
+            most_steps: 0,
+            ..self.options.clone()
+        };
+        let mut asked: BTreeSet<String> = BTreeSet::new();
+        for score in self.scores(set, &linear).into_iter().filter(pays) {
+            if is_nominal(&score.start) {
+                return Ok(true);
+            }
+            if asked.contains(&name(&score.start)) {
+                continue;
+            }
+            let start = add_scored(&set.fit.estimate, score);
+            // From a start where the plant runs away nothing is promised.
+            let Ok(with) = linear.fit(&start, &held) else {
+                continue;
+            };
+            let moved = motion::between(&with, &set.fit);
+            if motion::is_enough(&moved, &std).all(|enough| !enough) {
+                continue;
+            }
+            asked.extend(start.effects.last().map(name));
+            let fitted = self.fit_steps(&[start], &linear, self.options.most_steps);
+            if fitted
+                .iter()
+                .any(|with| with.log_posterior() > set.log_posterior())
+            {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.

@@ -1,0 +1,32 @@
+//! What effects move the outputs by, with everything else as it is.
+
+use simgap_estimate::Fit;
+
+/// Practical relevance: an effect, but for a wrong nominal parameter, is not worth a name that moves every output by less than
+/// this share of its motion, rms.
+const OF_MOTION: f64 = 0.003;
+
+/// What two fits of the same records differ by in each output, rms.
+pub(crate) fn between(with: &Fit, without: &Fit) -> Vec<f64> {
+    let runs = || with.discrepancy.iter().zip(&without.discrepancy);
+    let channels = 0..with.variance.len();
+    let of_channel = channels.map(|c| {
+        let (mut square, mut count) = (0.0, 0.0);
+        for (with, without) in runs() {
+            let pairs = with[c].iter().zip(&without[c]);
+            square += pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            count += with[c].len() as f64;
+        }
+        (square / f64::max(count, 1.0)).sqrt()
+    });
+    of_channel.collect()
+}
+
+/// Which outputs are moved by enough of their motion for a name.
+pub(crate) fn is_enough<'a>(
+    moved: &'a [f64],
+    motion: &'a [f64],
+) -> impl Iterator<Item = bool> + 'a {
+    let outputs = moved.iter().zip(motion);
+    outputs.map(|(by, motion)| *by > OF_MOTION * motion)
+}
