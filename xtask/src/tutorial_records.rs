@@ -1,5 +1,5 @@
 //! `cargo xtask tutorial-records [--check]`: the logger files that `docs/tutorial.md` works with, and those of
-//! `docs/hydraulics.md` ([`crate::mold_records`]).
+//! `docs/hydraulics.md` (`mold_records`).
 //!
 //! A table on leaf springs is simulated with an effect that the tutorial's model lacks, and written
 //! as a data logger would: lines before the header, a row of units, semicolons, decimal commas, a
