@@ -78,6 +78,20 @@ pub struct Input {
     pub between_samples: Option<BetweenSamples>,
 }
 
+impl Input {
+    /// Whether it may jump, or bend: what moves a node may not.
+    #[must_use]
+    pub fn may_jump(&self) -> bool {
+        self.kind != InputKind::Displacement
+    }
+
+    /// What it does between the samples, as stated or smooth.
+    #[must_use]
+    pub fn between_samples(&self) -> BetweenSamples {
+        self.between_samples.unwrap_or(BetweenSamples::Smooth)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

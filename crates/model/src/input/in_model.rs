@@ -2,7 +2,7 @@
 
 use super::{Input, InputKind};
 use crate::refuse::{is_one_of, item, node_name};
-use crate::{Model, ModelError, Node};
+use crate::{BetweenSamples, Model, ModelError, Node};
 
 impl Model {
     /// Checks that an input has something to drive.
@@ -39,6 +39,21 @@ impl Model {
                 at(valve.and_then(|valve| self.node(&valve.spool())))
             }
             InputKind::SetPoint => self.set_point_terms(input)?,
+        })
+    }
+}
+
+impl Input {
+    /// Refuses jumps of what may not jump.
+    pub(crate) fn check_between_samples(&self) -> Result<(), ModelError> {
+        let stated = self.between_samples();
+        if self.may_jump() || stated == BetweenSamples::Smooth {
+            return Ok(());
+        }
+        Err(ModelError::Shape {
+            place: item("input", &self.channel),
+            found: format!("between_samples = \"{}\"", stated.name()),
+            needed: "\"smooth\" for a displacement: a node that jumps has no velocity".into(),
         })
     }
 }
