@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use simgap_diagnose::audit::audit;
 use simgap_diagnose::{Cancel, CheckSeries, Outcome, Progress, Request, diagnose};
 use simgap_model::Model;
 use simgap_record::{AuditFinding, AuditTopic, Record};
 use simgap_report::page::{PictureFile, Report, ReportContext, ReportInput, report};
+use simgap_simulate::ExternalPlant;
 
 use crate::folder::Folder;
 use crate::input::{Input, RecordOptions, conversions, idle_masses};
@@ -38,6 +40,8 @@ pub struct Question<'a> {
     pub seed: u64,
     /// Whether the search is to end with the best answer so far.
     pub is_spent: &'a (dyn Fn() -> bool + Sync),
+    /// The simulator that the model stands for, where it stands for one.
+    pub plant: Option<Arc<ExternalPlant>>,
     /// Ends the whole work without an answer.
     pub cancel: Cancel,
 }
@@ -132,6 +136,7 @@ impl Question<'_> {
         let request = Request {
             withheld: self.withheld,
             is_spent: self.is_spent,
+            plant: self.plant.clone(),
             cancel: self.cancel.clone(),
             ..Request::new(self.model, &train, &check)
         };

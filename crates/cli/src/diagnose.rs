@@ -47,6 +47,7 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         withheld: &args.withhold,
         seed: args.seed,
         is_spent: &is_spent,
+        plant: None,
         cancel: Cancel::default(),
     };
     question.refuse_repeats()?;

@@ -37,6 +37,9 @@ pub(crate) fn divide<R: Borrow<Record>>(
     let Some(first) = train.first() else {
         return Err(DiagnoseError::NoRecord);
     };
+    if check.is_empty() && model.is_external() {
+        return Err(DiagnoseError::NoCheckRecord);
+    }
     let run = |record: &Record, part: &'static str| -> Result<Run, DiagnoseError> {
         let run = Run::with_outputs(model, record)?;
         for (output, measured) in model.outputs.iter().zip(&run.measured) {

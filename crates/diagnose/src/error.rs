@@ -7,6 +7,12 @@ use thiserror::Error;
 /// Why a diagnosis cannot be made.
 #[derive(Debug, Error)]
 pub enum DiagnoseError {
+    /// A simulator is to be judged by parts of the records it learns from.
+    #[error(
+        "a simulator begins every run in a state of its own, so that no part of a record can be held back: needed is a check record \
+         beside the records to learn from"
+    )]
+    NoCheckRecord,
     /// A record or the model does not allow a simulation.
     #[error(transparent)]
     Simulate(#[from] SimulateError),

@@ -343,7 +343,10 @@ pub(crate) fn states(located: &Located<'_>, motions: &[PlaceMotion]) -> Vec<Stat
             Location::Between([a, b]) if b == simgap_model::GROUND => a.clone(),
             Location::Between([a, b]) if a == simgap_model::GROUND => b.clone(),
             Location::Between([a, b]) => format!("{a} to {b}"),
-            Location::Mass(name) | Location::Input(name) | Location::Channel(name) => name.clone(),
+            Location::Mass(name)
+            | Location::Input(name)
+            | Location::Channel(name)
+            | Location::Parameter(name) => name.clone(),
         };
         list.extend(regions(&flat, "velocity", &velocity, &name));
         list.extend(regions(&flat, "displacement", &displacement, &name));

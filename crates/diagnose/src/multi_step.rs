@@ -24,6 +24,9 @@ pub(crate) fn closes(
     options: &FitOptions,
     share: f64,
 ) -> Result<bool, EstimateError> {
+    if !check.may_cut() {
+        return Ok(false);
+    }
     let cut = check.with_runs(check.runs.iter().flat_map(stretches).collect());
     let left = |placed: &[Placed]| -> Result<f64, EstimateError> {
         Ok(total(&predict(&cut, placed, options)?.nrmse))

@@ -7,6 +7,7 @@
 //! No stage calls an earlier one. The check records come in after everything has been decided and fitted.
 
 use std::borrow::Borrow;
+use std::sync::Arc;
 
 use simgap_effects::{Placed, catalogue};
 use simgap_estimate::{Cancel, Fit, FitOptions, Problem, Start, fit, fit_initial_states};
@@ -16,6 +17,7 @@ use simgap_inference::{
 };
 use simgap_model::{BetweenSamples, Model};
 use simgap_record::{Defect, QualityFinding, Record};
+use simgap_simulate::ExternalPlant;
 
 use crate::check::Check;
 use crate::data::{Data, divide};
@@ -41,6 +43,8 @@ pub struct Request<'a, R = Record> {
     pub withheld: &'a [String],
     /// Whether the search is to end; asked between its stages.
     pub is_spent: &'a (dyn Fn() -> bool + Sync),
+    /// The simulator that the model stands for, where it stands for one ([`Model::is_external`]).
+    pub plant: Option<Arc<ExternalPlant>>,
     /// Ends the whole work without an answer.
     pub cancel: Cancel,
 }
@@ -55,6 +59,7 @@ impl<'a, R: Borrow<Record>> Request<'a, R> {
             check,
             withheld: &[],
             is_spent: &|| false,
+            plant: None,
             cancel: Cancel::default(),
         }
     }
@@ -98,6 +103,7 @@ pub fn diagnose<R: Borrow<Record>>(
     data.notes.extend(read_otherwise(request.model, &model));
     let request = &Request {
         model: &model,
+        plant: request.plant.clone(),
         cancel: request.cancel.clone(),
         ..*request
     };
@@ -186,6 +192,7 @@ fn prepare<R: Borrow<Record>>(
     data: &Data,
 ) -> Result<Prepared, DiagnoseError> {
     let mut train = Problem::new(request.model, data.train.clone())?;
+    train.plant.clone_from(&request.plant);
     train.leaves_out_ends = true;
     train.cancel = request.cancel.clone();
     let options = FitOptions::white(request.model.outputs.len());
@@ -213,7 +220,10 @@ fn prepare<R: Borrow<Record>>(
         ..options
     };
     let recalibrated = recalibrate(&train, &start, &loose)?;
-    let mut excerpt = train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy));
+    let mut excerpt = match train.may_cut() {
+        true => train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy)),
+        false => train.with_runs(train.runs.clone()),
+    };
     excerpt.leaves_out_ends = true;
     Ok(Prepared {
         train,

@@ -11,6 +11,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &input_gain::InputGain,
     &pendulum_error::PendulumError,
     &load_error::LoadError,
+    &parameter_error::ParameterError,
     // Forces.
     &viscous_damping::ViscousDamping,
     &linear_stiffness::LinearStiffness,

@@ -61,6 +61,8 @@ pub enum SiteKind {
     Input,
     /// An output channel.
     Channel,
+    /// A parameter of a simulator.
+    Parameter,
 }
 
 /// An effect with a clock of its own: it is proportional to `amplitude · sin(2π f t + phase)`, each

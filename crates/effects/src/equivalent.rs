@@ -59,12 +59,15 @@ pub struct Equivalent {
 #[must_use]
 pub fn equivalents(kind: &str, at: &Location, model: &Model) -> Vec<Equivalent> {
     let mut classes = vec![];
-    classes.extend(loaded(model));
-    classes.extend(rest_position(model));
-    classes.extend(final_speed(model));
-    classes.extend(proportional(model));
-    classes.extend(late(model));
-    classes.extend(commuting(model));
+    // What is the same on a simulator, the records say.
+    if !model.is_external() {
+        classes.extend(loaded(model));
+        classes.extend(rest_position(model));
+        classes.extend(final_speed(model));
+        classes.extend(proportional(model));
+        classes.extend(late(model));
+        classes.extend(commuting(model));
+    }
     let mut found: Vec<Equivalent> = Vec::new();
     for (members, because) in classes {
         if !members.iter().any(|(k, a)| *k == kind && same_place(a, at)) {
@@ -100,6 +103,9 @@ pub fn equivalents_beside(effects: &[Placed], i: usize, model: &Model) -> Vec<Eq
     let Some(placed) = effects.get(i) else {
         return vec![];
     };
+    if model.is_external() {
+        return equivalents(placed.effect.kind(), &placed.at, model);
+    }
     let mut model = model.clone();
     let mut only_delays = false;
     for (j, other) in effects.iter().enumerate() {

@@ -43,7 +43,7 @@ pub use equivalent::{Equivalent, equivalents, equivalents_beside, likelier_line}
 pub use error::EffectError;
 pub use free::{VELOCITY_NODES, find_law, free_laws};
 pub use line::Line;
-pub use place::{Placed, same_place, sites};
+pub use place::{Placed, places_of, same_place, sites};
 pub use prior::{EXACT, LocalPrior, Prior, SLIPPED, SLIPS, Slip, slip_of};
 pub use signal_map::{Sampled, SignalMap, most_beyond};
 pub use wave::Wave;

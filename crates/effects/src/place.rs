@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use simgap_model::{EffectEntry, GROUND, Location, Model, Node, NominalQuantity, same_pair};
 
-use crate::{Action, Effect, EffectError, SiteKind, catalogue, find_law};
+use crate::{Action, Effect, EffectError, Family, SiteKind, catalogue, find_law};
 
 /// An effect at its place with its parameter values.
 #[derive(Clone)]
@@ -112,10 +112,16 @@ impl Placed {
             }
             values.push(value);
         }
-        // A point of a body has no mass of its own.
-        let is_massless = matches!(&entry.at, Location::Mass(name)
-            if effect.nominal_quantity() == Some(NominalQuantity::Mass)
-                && matches!(model.node(name), Some(Node::Point(_))));
+        let node = match &entry.at {
+            Location::Mass(name) => model.node(name),
+            _ => None,
+        };
+        // A point of a body has no mass of its own, a port of a simulator nothing but its motion.
+        let is_massless = match node {
+            Some(Node::Point(_)) => effect.nominal_quantity() == Some(NominalQuantity::Mass),
+            Some(Node::Port(_)) => effect.family() != Family::Force,
+            _ => false,
+        };
         if is_massless || !effect.site().accepts(&entry.at) {
             return Err(EffectError::WrongPlace {
                 kind: entry.kind.clone(),
@@ -151,6 +157,7 @@ const MEMBER: &str = "between = [\"a\", \"b\"]";
 const MASS: &str = "mass = \"name\"";
 const INPUT: &str = "input = \"channel\"";
 const CHANNEL: &str = "channel = \"name\"";
+const PARAMETER: &str = "parameter = \"name\"";
 
 /// Whether two places are one, whichever way round a pair is written.
 #[must_use]
@@ -176,6 +183,7 @@ impl SiteKind {
             SiteKind::Mass | SiteKind::Pendulum | SiteKind::Load | SiteKind::Spool => MASS,
             SiteKind::Input => INPUT,
             SiteKind::Channel => CHANNEL,
+            SiteKind::Parameter => PARAMETER,
         }
     }
 
@@ -188,6 +196,7 @@ impl SiteKind {
                 | (Location::Mass(_), MASS)
                 | (Location::Input(_), INPUT)
                 | (Location::Channel(_), CHANNEL)
+                | (Location::Parameter(_), PARAMETER)
         )
     }
 
@@ -214,6 +223,7 @@ impl SiteKind {
             SiteKind::Spool => "the spool of a valve",
             SiteKind::Input => "an input",
             SiteKind::Channel => "an output",
+            SiteKind::Parameter => "a parameter of a simulator",
         }
     }
 }
@@ -243,7 +253,11 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
         SiteKind::Member => between(&|_| true),
         SiteKind::Spring => between(&sprung),
         SiteKind::GroundSpring => {
-            between(&|pair| sprung(pair) && pair.iter().any(|node| node == GROUND))
+            // A port has no mass that a support could be put under.
+            let is_port = |node: &String| model.port(node).is_some();
+            between(&|pair| {
+                sprung(pair) && pair.iter().any(|node| node == GROUND) && !pair.iter().any(is_port)
+            })
         }
         SiteKind::Damper => between(&damped),
         SiteKind::NoSpring => placed(pairs(model), &|pair| !sprung(pair)),
@@ -276,7 +290,24 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
             .iter()
             .map(|o| Location::Channel(o.channel.clone()))
             .collect(),
+        SiteKind::Parameter => {
+            let parameters = model.plant_parameters.iter();
+            parameters
+                .map(|parameter| Location::Parameter(parameter.name.clone()))
+                .collect()
+        }
     }
+}
+
+/// Every place in a model where an effect can sit: [`sites`] of its kind, and for a force on a mass the ports of a simulator as well.
+#[must_use]
+pub fn places_of(model: &Model, effect: &dyn Effect) -> Vec<Location> {
+    let mut places = sites(model, effect.site());
+    if effect.site() == SiteKind::Mass && effect.family() == Family::Force {
+        let ports = model.ports.iter();
+        places.extend(ports.map(|port| Location::Mass(port.name.clone())));
+    }
+    places
 }
 
 /// The masses of the names that are kept.
@@ -299,10 +330,12 @@ fn points(model: &Model) -> impl Iterator<Item = String> + '_ {
     bodies.flat_map(|body| body.points.iter().map(|point| body.node_name(point)))
 }
 
-/// The members of the model, and every mass and every point of a body with the ground.
+/// The members of the model, and every mass, every point of a body and every port of a simulator with the ground.
 fn joints(model: &Model) -> Vec<[String; 2]> {
     let mut joints = model.members();
-    for node in places(model).map(String::from).chain(points(model)) {
+    let ports = model.ports.iter().map(|port| port.name.clone());
+    let nodes = places(model).map(String::from).chain(points(model));
+    for node in nodes.chain(ports) {
         let pair = [node, GROUND.to_string()];
         if !joints.iter().any(|known| same_pair(known, &pair)) {
             joints.push(pair);

@@ -6,9 +6,9 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use common::{force, hydraulic, model, model_at, scale};
+use common::{force, hydraulic, model, model_at, scale, simulator};
 use simgap_effects::{
-    Action, Effect, Family, Parameter, Placed, Sampled, SiteScale, catalogue, sites,
+    Action, Effect, Family, Parameter, Placed, Sampled, SiteKind, SiteScale, catalogue, sites,
 };
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_model::{Location, Model};
@@ -69,6 +69,7 @@ fn matrix_entries(model: &Model) -> Vec<f64> {
     let matrices = model.tangent_matrices().unwrap();
     let n = model.dof_count();
     let mut entries = model.load_vector();
+    entries.extend(model.plant_parameters.iter().map(|one| one.value));
     for matrix in [
         &matrices.mass_matrix,
         &matrices.damping_matrix,
@@ -99,10 +100,10 @@ fn measured() -> Vec<f64> {
 }
 
 fn first_site(effect: &dyn Effect) -> Location {
-    let model = if effect.site().is_hydraulic() {
-        hydraulic()
-    } else {
-        model()
+    let model = match effect.site() {
+        site if site.is_hydraulic() => hydraulic(),
+        SiteKind::Parameter => simulator(),
+        _ => model(),
     };
     sites(&model, effect.site())
         .into_iter()
@@ -185,6 +186,7 @@ fn verify_the_kinds_of_the_contract_that_are_here_keep_their_names() {
         "input_delay",
         "pendulum_error",
         "load_error",
+        "parameter_error",
         "input_dead_zone",
         "input_saturation",
         "input_rate_limit",

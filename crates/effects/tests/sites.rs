@@ -286,3 +286,41 @@ fn verify_a_place_that_is_not_in_the_model_is_refused() {
     entry.at = Location::Between(["load".into(), "load".into()]);
     assert!(refused(&entry).contains("load"), "{}", refused(&entry));
 }
+
+/// A port takes forces and laws to the ground; what needs a mass there is refused.
+#[test]
+fn verify_ports_and_parameters_of_a_simulator_are_places() {
+    let model = common::simulator();
+    let of = |kind: &str| -> Vec<String> {
+        let places = places_of(&model, find(kind).unwrap()).into_iter();
+        places.map(|at| at.to_string()).collect()
+    };
+    for kind in [
+        "coulomb_friction",
+        "viscous_damping",
+        "linear_stiffness",
+        "end_stop",
+    ] {
+        assert_eq!(of(kind), ["between joint and ground"], "{kind}");
+    }
+    assert_eq!(of("constant_force"), ["mass joint"]);
+    assert_eq!(of("parameter_error"), ["parameter inertia"]);
+    assert_eq!(of("sensor_delay"), ["channel q"]);
+    for kind in [
+        "mass_error",
+        "attached_mode",
+        "flexible_support",
+        "backlash",
+        "stiffness_error",
+    ] {
+        assert_eq!(of(kind), [""; 0], "{kind}");
+    }
+    let entry = |kind: &str, value: &str| EffectEntry {
+        kind: kind.into(),
+        at: Location::Mass("joint".into()),
+        parameters: [(value.to_string(), 1.0)].into(),
+    };
+    assert!(Placed::from_entry(&model, &entry("constant_force", "force_n")).is_ok());
+    let refused = Placed::from_entry(&model, &entry("mass_error", "mass_factor"));
+    assert!(matches!(refused, Err(EffectError::WrongPlace { .. })));
+}

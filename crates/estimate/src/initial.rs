@@ -34,7 +34,7 @@ pub fn fit_initial_states(
             }
         }
         let mut best = states_from(&fixed, initial.clone(), weights)?;
-        if !may_part(&fixed.given) {
+        if !may_part(&fixed.given) || fixed.state_len() == 0 {
             return Ok(best);
         }
         let others = [

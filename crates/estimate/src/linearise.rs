@@ -16,6 +16,9 @@ use crate::{EstimateError, Problem};
 /// nowhere. Rounding takes as little as 1e-7 of it, and with sticking friction not more.
 const DIFFERENCE: f64 = 1e-6;
 
+/// The same for a simulator of the user's, whose solver may be no more accurate than this squared.
+const DIFFERENCE_OUTSIDE: f64 = 1e-4;
+
 /// The sensitivity of the signals of one run to one entry of θ; as long as the record, and shared by all
 /// fits that start at one point.
 pub(crate) type Column = Arc<Signals>;
@@ -157,8 +160,12 @@ pub(crate) fn discrepancy(problem: &Problem, run: usize, mut predicted: Signals)
 }
 
 /// The size of the step that entry is differentiated with.
-fn difference(layout: &Layout, theta: &[f64], entry: usize) -> f64 {
-    let step = DIFFERENCE * layout.scale[entry];
+fn difference(problem: &Problem, layout: &Layout, theta: &[f64], entry: usize) -> f64 {
+    let share = match problem.model.is_external() {
+        true => DIFFERENCE_OUTSIDE,
+        false => DIFFERENCE,
+    };
+    let step = share * layout.scale[entry];
     if theta[entry] + step > layout.upper[entry] {
         -step
     } else {
@@ -251,7 +258,7 @@ fn probe_from(
             points.push(whole);
         }
         for (place, entry) in wanted {
-            next[entry] += difference(layout, theta, entry);
+            next[entry] += difference(problem, layout, theta, entry);
             match simulators.point(&next, run, true) {
                 Ok(point) => {
                     parts.push((run, Part::Moved(place, entry)));
@@ -279,7 +286,7 @@ fn probe_from(
     let mut probe = known.unwrap_or_else(|| Probe::new(layout, whole));
     for (run, place, entry, signals) in moved {
         let own = smooth[run].as_ref().unwrap_or(&probe.discrepancy[run]);
-        let factor = layout.scale[entry] / difference(layout, theta, entry);
+        let factor = layout.scale[entry] / difference(problem, layout, theta, entry);
         probe.columns[run][place] = Some(signals.map(|signals| {
             let mut column = derivative(signals, own, factor);
             reach.keep(run, &mut column);

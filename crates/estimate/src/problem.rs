@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue, sites};
+use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue, places_of};
 use simgap_model::{DEFAULT_UNCERTAINTY, Form, Location, Model, Node, OutputKind};
-use simgap_simulate::{Run, Simulator, substeps_for};
+use simgap_simulate::{ExternalPlant, Run, Simulator, substeps_for};
 
 use crate::candidate::Candidate;
 use crate::{Cancel, EstimateError, Whitening};
@@ -26,6 +26,8 @@ pub struct Problem {
     /// Whether the samples at either end of a run that a late or early channel may leave out
     /// ([`simgap_effects::most_beyond`]) count for no set, so that sets are compared on the same samples; not so at first.
     pub leaves_out_ends: bool,
+    /// The simulator that a model of one stands for ([`Model::is_external`]).
+    pub plant: Option<Arc<ExternalPlant>>,
     /// Ends the work on it.
     pub cancel: Cancel,
 }
@@ -92,6 +94,7 @@ impl Problem {
             whitening: Whitening::default(),
             scales: vec![],
             leaves_out_ends: false,
+            plant: None,
             cancel: Cancel::default(),
         })
     }
@@ -107,6 +110,7 @@ impl Problem {
             whitening: self.whitening.clone(),
             scales: self.scales.clone(),
             leaves_out_ends: false,
+            plant: self.plant.clone(),
             cancel: self.cancel.clone(),
         }
     }
@@ -119,6 +123,13 @@ impl Problem {
             leaves_out_ends: self.leaves_out_ends,
             ..self.with_runs(self.runs.clone())
         }
+    }
+
+    /// Whether a record may be cut: a simulator of the user's begins every run in a state of its own, so that what lies later in a
+    /// record cannot be simulated alone.
+    #[must_use]
+    pub fn may_cut(&self) -> bool {
+        !self.model.is_external()
     }
 
     /// Whether discrepancies are filtered.
@@ -146,7 +157,7 @@ impl Problem {
         self.cancel.check()?;
         let all = self.given.iter().chain(effects);
         let all: Vec<Placed> = all.map(|placed| placed.in_record(run)).collect();
-        Simulator::new(&self.model, &all, self.substeps)
+        Simulator::with_plant(&self.model, &all, self.substeps, self.plant.as_ref())
     }
 
     /// [`Problem::simulator`] of every run; one for all where no effect has values of a run's own.
@@ -206,7 +217,7 @@ impl Problem {
             family(effect.family()) && !(resampled && lives_in_single_samples(effect))
         };
         for &effect in catalogue().iter().filter(|effect| is_sought(**effect)) {
-            for at in sites(&self.model, effect.site()) {
+            for at in places_of(&self.model, effect) {
                 candidates.push(Candidate { effect, at });
             }
         }
@@ -281,7 +292,10 @@ impl Problem {
                         Form::Displacement => state[i] = first,
                         Form::Velocity => state[n + i] = first,
                         Form::Rate { scale, offset } => state[n + i] = (first - offset) / scale,
-                        Form::Acceleration | Form::Members { .. } | Form::Orifice { .. } => {}
+                        Form::Acceleration
+                        | Form::Members { .. }
+                        | Form::Orifice { .. }
+                        | Form::Signal => {}
                     }
                 }
                 state

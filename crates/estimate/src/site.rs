@@ -25,15 +25,23 @@ impl Problem {
     /// [`EstimateError`] when the model cannot be propagated.
     pub fn site_scale(&self, fit: &Fit, at: &Location) -> Result<SiteScale, EstimateError> {
         let mut path = MemberPath::default();
+        let mut at_port = None;
         for (r, run) in self.runs.iter().enumerate() {
             let simulator = self.simulator(&fit.estimate.nominal, r)?;
             let one = simulator.path(run, &fit.estimate.initial[r], at)?;
+            if at_port.is_none() {
+                at_port = simulator.port_inertia(run, at)?;
+            }
             path.displacement.extend(one.displacement);
             path.velocity.extend(one.velocity);
             path.acceleration.extend(one.acceleration);
         }
         let channel = self.channel_at(at);
-        let inertia = self.force_scale(at, rms_about_mean(|| path.acceleration.iter()));
+        let acceleration = rms_about_mean(|| path.acceleration.iter());
+        let inertia = match at_port {
+            Some(mass) => mass * acceleration,
+            None => self.force_scale(at, acceleration),
+        };
         let signal = match (at, channel) {
             (_, Some(i)) => self.motion_std()[i],
             (Location::Input(name), None) => {
@@ -69,7 +77,7 @@ impl Problem {
                 force_n / displacement_m
             },
             has_spring: stiffness > 0.0,
-            mass_kg: mass_at(&self.model, at).unwrap_or(1.0),
+            mass_kg: at_port.or(mass_at(&self.model, at)).unwrap_or(1.0),
             lines_hz: self.lines_left(fit, at),
             carriers_hz: self.carriers_left(fit, at),
             motion_hz: lines(&[moved.unwrap_or_default()], step),
@@ -165,7 +173,7 @@ fn masses_at<'a>(model: &'a Model, at: &'a Location) -> impl Iterator<Item = f64
     let names: Vec<&String> = match at {
         Location::Between(pair) => pair.iter().collect(),
         Location::Mass(mass) => vec![mass],
-        Location::Input(_) | Location::Channel(_) => vec![],
+        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => vec![],
     };
     let masses = model.masses.iter();
     masses
@@ -181,7 +189,7 @@ fn stiffness_at(model: &Model, at: &Location) -> f64 {
     let springs = model.springs.iter().filter(|spring| match at {
         Location::Between(pair) => same_pair(&spring.between, pair),
         Location::Mass(mass) => spring.between.contains(mass),
-        Location::Input(_) | Location::Channel(_) => false,
+        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => false,
     });
     springs.map(|spring| spring.stiffness).sum()
 }

@@ -83,6 +83,7 @@ fn asked(unit: &Unit, cancel: &Cancel) -> Result<Vec<Row>, AppError> {
         withheld: &unit.withhold,
         seed: 0,
         is_spent: &|| false,
+        plant: None,
         cancel: cancel.clone(),
     };
     question.refuse_repeats()?;

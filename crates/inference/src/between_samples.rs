@@ -7,7 +7,7 @@
 
 use simgap_effects::Placed;
 use simgap_estimate::{Cancel, EstimateError, FitOptions, Problem, Start, fit_initial_states};
-use simgap_model::{BetweenSamples, Model};
+use simgap_model::{BetweenSamples, InputKind, Model};
 use simgap_simulate::Run;
 
 use crate::{RECALIBRATION_STD, recalibrate};
@@ -24,7 +24,10 @@ pub fn read_inputs(model: &Model, runs: &[Run], cancel: &Cancel) -> Result<Model
     let asked: Vec<usize> = (0..model.inputs.len())
         .filter(|&i| {
             let input = &model.inputs[i];
-            let is_open = input.between_samples.is_none() && input.may_jump();
+            // What an input of a simulator is between the samples, the simulator decides.
+            let is_open = input.between_samples.is_none()
+                && input.may_jump()
+                && input.kind != InputKind::Signal;
             is_open && runs.iter().all(|run| goes_in_jumps(&run.inputs[i]))
         })
         .collect();

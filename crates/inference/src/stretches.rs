@@ -69,10 +69,9 @@ pub(crate) struct Cut(Vec<Vec<Range<usize>>>);
 
 impl Cut {
     pub(crate) fn of(problem: &Problem) -> Cut {
+        let most = if problem.may_cut() { MOST_STRETCHES } else { 1 };
         let runs = problem.runs.iter();
-        Cut(runs
-            .map(|run| bounds(run.len, SHORTEST, MOST_STRETCHES))
-            .collect())
+        Cut(runs.map(|run| bounds(run.len, SHORTEST, most)).collect())
     }
 
     pub(crate) fn is_whole(&self) -> bool {

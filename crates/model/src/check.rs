@@ -9,6 +9,7 @@ impl Model {
     /// # Errors
     /// The first fault found, with its place.
     pub fn check(&self) -> Result<(), ModelError> {
+        self.check_plant()?;
         self.check_masses()?;
         self.check_members()?;
         self.check_inputs()?;
@@ -33,6 +34,7 @@ impl Model {
         let points: Vec<String> = self.point_names().collect();
         let names = self.masses.iter().map(|m| m.name.as_str());
         let names = names.chain(self.base_nodes());
+        let names = names.chain(self.ports.iter().map(|port| port.name.as_str()));
         unique("mass", names.chain(points.iter().map(String::as_str)))?;
         for mass in &self.masses {
             let [table, quantity, needed] = self.told_mass(&mass.name);
@@ -126,6 +128,7 @@ impl Model {
             check_uncertainty(&place, output.uncertainty)?;
             let force = output.kind == OutputKind::Force;
             match (&output.at, &output.between) {
+                (_, None) if output.kind == OutputKind::Signal => {}
                 (Some(_), None) if !force => {
                     self.reading(output)?;
                 }
@@ -160,7 +163,10 @@ impl Model {
     }
 
     pub(crate) fn check_mass(&self, name: &str, place: &str) -> Result<(), ModelError> {
-        if matches!(self.node(name), Some(Node::Dof(_) | Node::Point(_))) {
+        if matches!(
+            self.node(name),
+            Some(Node::Dof(_) | Node::Point(_) | Node::Port(_))
+        ) {
             return Ok(());
         }
         Err(ModelError::UnknownNode {
@@ -171,6 +177,7 @@ impl Model {
                 .iter()
                 .map(|mass| mass.name.clone())
                 .chain(self.point_names())
+                .chain(self.ports.iter().map(|port| port.name.clone()))
                 .collect::<Vec<_>>()
                 .join(", "),
         })
@@ -202,6 +209,18 @@ impl Model {
                 name,
                 self.outputs.iter().map(|o| o.channel.as_str()).collect(),
             ),
+            Location::Parameter(name) => {
+                let names = self.plant_parameters.iter();
+                let known: Vec<&str> = names.map(|p| p.name.as_str()).collect();
+                if known.contains(&name.as_str()) {
+                    return Ok(());
+                }
+                Err(ModelError::Shape {
+                    place: place.into(),
+                    found: format!("parameter = \"{name}\""),
+                    needed: format!("the name of a [[parameter]]: {}", known.join(", ")),
+                })
+            }
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::body::file::{BodyFile, PointFile};
 use crate::refuse::item;
 use crate::{
     Beam, Block, Cylinder, Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError,
-    Output, Pendulum, Spring, Valve,
+    Output, Pendulum, PlantParameter, PlantPort, Spring, Valve,
 };
 
 /// The schema this version reads and writes.
@@ -46,6 +46,10 @@ struct ModelFile {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pendulum: Vec<Pendulum>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    parameter: Vec<PlantParameter>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    port: Vec<PlantPort>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     effect: Vec<EffectFile>,
 }
 
@@ -60,6 +64,8 @@ struct EffectFile {
     input: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     channel: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    parameter: Option<String>,
     #[serde(flatten)]
     parameters: BTreeMap<String, f64>,
 }
@@ -71,6 +77,7 @@ impl EffectFile {
             self.mass.map(Location::Mass),
             self.input.map(Location::Input),
             self.channel.map(Location::Channel),
+            self.parameter.map(Location::Parameter),
         ];
         let mut found: Vec<Location> = places.into_iter().flatten().collect();
         match (found.pop(), found.is_empty()) {
@@ -86,7 +93,7 @@ impl EffectFile {
                 } else {
                     "several places are given".into()
                 },
-                needed: "exactly one of between, mass, input, channel".into(),
+                needed: "exactly one of between, mass, input, channel, parameter".into(),
             }),
         }
     }
@@ -98,6 +105,7 @@ impl EffectFile {
             mass: None,
             input: None,
             channel: None,
+            parameter: None,
             parameters: entry.parameters.clone(),
         };
         match entry.at.clone() {
@@ -105,6 +113,7 @@ impl EffectFile {
             Location::Mass(mass) => file.mass = Some(mass),
             Location::Input(channel) => file.input = Some(channel),
             Location::Channel(channel) => file.channel = Some(channel),
+            Location::Parameter(name) => file.parameter = Some(name),
         }
         file
     }
@@ -174,6 +183,8 @@ impl Model {
             outputs: file.output,
             loads: file.load,
             pendulums: file.pendulum,
+            plant_parameters: file.parameter,
+            ports: file.port,
             effects,
             ..Model::default()
         };
@@ -244,6 +255,8 @@ impl Model {
             output: self.outputs.clone(),
             load: self.loads.clone(),
             pendulum: self.pendulums.clone(),
+            parameter: self.plant_parameters.clone(),
+            port: self.ports.clone(),
             effect: self.effects.iter().map(EffectFile::from_entry).collect(),
         };
         toml::to_string(&file).map_err(|error| ModelError::Syntax {

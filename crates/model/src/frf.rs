@@ -107,6 +107,7 @@ impl Model {
                 }
                 Form::Rate { scale, .. } => of_motion(FrfKind::Mobility) * scale,
                 Form::Orifice { gain, .. } => (a - b) * gain,
+                Form::Signal => c64::new(0.0, 0.0),
             }
         };
         Ok(Mat::from_fn(

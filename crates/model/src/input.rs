@@ -21,15 +21,18 @@ pub enum InputKind {
     Command,
     /// A set point of a block, in the unit of its sum.
     SetPoint,
+    /// An input of a simulator of the user's, in SI where the unit of the column has one.
+    Signal,
 }
 
 impl InputKind {
     /// Every kind.
-    pub const ALL: [InputKind; 4] = [
+    pub const ALL: [InputKind; 5] = [
         InputKind::Force,
         InputKind::Displacement,
         InputKind::Command,
         InputKind::SetPoint,
+        InputKind::Signal,
     ];
 
     /// Name in the model file, and SI unit; `1` for what has a unit of its own.
@@ -39,6 +42,7 @@ impl InputKind {
             InputKind::Displacement => ["displacement", "m"],
             InputKind::Command => ["command", "1"],
             InputKind::SetPoint => ["set_point", "1"],
+            InputKind::Signal => ["signal", "1"],
         }
     }
 
@@ -63,7 +67,7 @@ pub struct Input {
     pub channel: String,
     /// Force or base displacement.
     pub kind: InputKind,
-    /// A mass or a point of a body, the name of the base node, of the valve or of the block.
+    /// A mass or a point of a body, the name of the base node, of the valve or of the block, or of the input of a simulator.
     pub at: String,
     /// Model unit per unit of the channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]

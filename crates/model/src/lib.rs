@@ -58,6 +58,7 @@ mod node;
 mod output;
 mod parameter;
 mod parts;
+mod plant;
 mod pole_kind;
 mod refuse;
 mod sensitivity;
@@ -85,6 +86,7 @@ pub use parameter::Parameter;
 pub use parts::{
     DEFAULT_UNCERTAINTY, Damper, EffectEntry, GROUND, Load, Location, Mass, Pendulum, Spring,
 };
+pub use plant::{PlantParameter, PlantPort};
 pub use pole_kind::{PoleKind, pole_kinds};
 pub use sensitivity::{PoleSensitivity, pole_sensitivities, receptance_sensitivity};
 pub use uncertainty::NominalQuantity;

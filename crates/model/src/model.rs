@@ -5,7 +5,8 @@ use faer::Mat;
 use crate::refuse::item;
 use crate::{
     Beam, Block, Body, Cylinder, Damper, EffectEntry, GROUND, Input, InputKind, Load, Mass,
-    ModelError, Node, Output, Pendulum, Spring, StructuralMatrices, Valve,
+    ModelError, Node, Output, Pendulum, PlantParameter, PlantPort, Spring, StructuralMatrices,
+    Valve,
 };
 
 /// A lumped model of any number of degrees of freedom, none included.
@@ -45,6 +46,10 @@ pub struct Model {
     pub loads: Vec<Load>,
     /// Gravity on arms.
     pub pendulums: Vec<Pendulum>,
+    /// Parameters of a simulator of the user's.
+    pub plant_parameters: Vec<PlantParameter>,
+    /// Ports of a simulator of the user's, which are nodes.
+    pub ports: Vec<PlantPort>,
     /// Effects added to the nominal model.
     pub effects: Vec<EffectEntry>,
 }
@@ -72,10 +77,10 @@ impl Model {
         if let Some(point) = self.body_point(name) {
             return Some(point);
         }
-        self.base_nodes()
-            .iter()
-            .position(|&base| base == name)
-            .map(Node::Base)
+        let bases = self.base_nodes();
+        let base = bases.iter().position(|&base| base == name);
+        base.map(Node::Base)
+            .or_else(|| self.port(name).map(Node::Port))
     }
 
     /// The place of a coordinate of a name.
@@ -255,7 +260,8 @@ impl Model {
     fn node_names(&self) -> Vec<String> {
         let masses = self.masses.iter().map(|mass| mass.name.clone());
         let bases = self.base_nodes().into_iter().map(String::from);
-        let moving = masses.chain(self.point_names()).chain(bases);
+        let ports = self.ports.iter().map(|port| port.name.clone());
+        let moving = masses.chain(self.point_names()).chain(bases).chain(ports);
         moving.chain([GROUND.to_string()]).collect()
     }
 }

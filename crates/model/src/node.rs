@@ -12,6 +12,7 @@
 /// | a coordinate i (a mass, the heave or the roll of a body) | 1 at i |
 /// | a point of a body, off its centre of mass by `arm` | 1 at the heave, `arm` at the roll |
 /// | a moving base | zero over the coordinates: its displacement is prescribed |
+/// | a port of a simulator | zero over the coordinates: there are none |
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Node {
     /// Never moves.
@@ -22,6 +23,8 @@ pub enum Node {
     Base(usize),
     /// A point of a rigid body.
     Point(BodyPoint),
+    /// A port of a simulator, index into [`crate::Model::ports`]: its motion is the simulator's answer.
+    Port(usize),
 }
 
 /// A point of a rigid body: y = heave + arm roll, for small angles.
@@ -58,7 +61,7 @@ impl Node {
     /// The entries of the row that are not zero: coordinate and weight.
     pub fn terms(self) -> impl Iterator<Item = (usize, f64)> {
         let [first, second] = match self {
-            Node::Ground | Node::Base(_) => [None, None],
+            Node::Ground | Node::Base(_) | Node::Port(_) => [None, None],
             Node::Dof(i) => [Some((i, 1.0)), None],
             Node::Point(point) => [Some((point.heave, 1.0)), Some((point.roll, point.arm_m()))],
         };
@@ -70,7 +73,7 @@ impl Node {
     #[must_use]
     pub fn of(self, dofs: &[f64], bases: &[f64]) -> f64 {
         match self {
-            Node::Ground => 0.0,
+            Node::Ground | Node::Port(_) => 0.0,
             Node::Dof(i) => dofs[i],
             Node::Base(i) => bases[i],
             Node::Point(point) => dofs[point.heave] + point.arm_m() * dofs[point.roll],
@@ -81,7 +84,7 @@ impl Node {
     #[inline(always)]
     pub fn push(self, force: f64, dof_force: &mut [f64]) {
         match self {
-            Node::Ground | Node::Base(_) => {}
+            Node::Ground | Node::Base(_) | Node::Port(_) => {}
             Node::Dof(i) => dof_force[i] += force,
             Node::Point(point) => {
                 dof_force[point.heave] += force;

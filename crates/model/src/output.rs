@@ -29,11 +29,13 @@ pub enum OutputKind {
     Spool,
     /// The flow from the valves into a chamber, m³/s.
     Flow,
+    /// An output of a simulator of the user's, in SI where the unit of the column has one.
+    Signal,
 }
 
 impl OutputKind {
     /// Every kind.
-    pub const ALL: [OutputKind; 8] = [
+    pub const ALL: [OutputKind; 9] = [
         OutputKind::Displacement,
         OutputKind::Velocity,
         OutputKind::Acceleration,
@@ -42,6 +44,7 @@ impl OutputKind {
         OutputKind::Pressure,
         OutputKind::Spool,
         OutputKind::Flow,
+        OutputKind::Signal,
     ];
 
     /// Name in the model file, and SI unit.
@@ -55,6 +58,7 @@ impl OutputKind {
             OutputKind::Pressure => ["pressure", "Pa"],
             OutputKind::Spool => ["spool", "1"],
             OutputKind::Flow => ["flow", "m^3/s"],
+            OutputKind::Signal => ["signal", "1"],
         }
     }
 
@@ -79,7 +83,8 @@ pub struct Output {
     pub channel: String,
     /// The measured quantity.
     pub kind: OutputKind,
-    /// The node whose motion is measured, the body, the chamber or the valve.
+    /// The node whose motion is measured, the body, the chamber or the valve; the output of a simulator, where it has another
+    /// name than the channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<String>,
     /// For a force: the nodes between which the members carry it.
@@ -137,6 +142,8 @@ pub enum Form {
         /// The pressure of the chamber.
         chamber: Node,
     },
+    /// What the simulator answers; nothing of x.
+    Signal,
 }
 
 #[cfg(test)]

@@ -89,6 +89,8 @@ pub enum Location {
     Input(String),
     /// In the path of an output channel.
     Channel(String),
+    /// A parameter of a simulator.
+    Parameter(String),
 }
 
 impl fmt::Display for Location {
@@ -98,6 +100,7 @@ impl fmt::Display for Location {
             Location::Mass(m) => write!(f, "mass {m}"),
             Location::Input(c) => write!(f, "input {c}"),
             Location::Channel(c) => write!(f, "channel {c}"),
+            Location::Parameter(p) => write!(f, "parameter {p}"),
         }
     }
 }

@@ -13,7 +13,7 @@ impl Model {
         let nodes = match at {
             Location::Between([a, b]) => [self.node(a)?, self.node(b)?],
             Location::Mass(mass) => [self.node(mass)?, Node::Ground],
-            Location::Input(_) | Location::Channel(_) => return None,
+            Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => return None,
         };
         // How a body that rolls is held, springs between nodes do not say.
         if !self.bodies.is_empty() {
@@ -22,7 +22,7 @@ impl Model {
         let groups = self.groups();
         let [a, b] = nodes.map(|node| match node {
             Node::Dof(mass) => Some(groups[mass]),
-            Node::Ground | Node::Base(_) | Node::Point(_) => None,
+            Node::Ground | Node::Base(_) | Node::Point(_) | Node::Port(_) => None,
         });
         let moved = |group: usize, by: f64| -> Option<Vec<f64>> {
             let is_free = !self.is_placed(&groups, group);

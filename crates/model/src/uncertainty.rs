@@ -20,6 +20,8 @@ pub enum NominalQuantity {
     InputGain,
     /// Gain of an output, at [`Location::Channel`].
     OutputGain,
+    /// A parameter of a simulator, at [`Location::Parameter`].
+    PlantParameter,
 }
 
 /// Value and stated uncertainty of each part of a kind at a place; with `iter_mut` and `&mut` the latter to be changed.
@@ -54,6 +56,10 @@ macro_rules! nominal_parts {
             (Q::OutputGain, Location::Channel(channel)) => {
                 let here = $model.outputs.$iter().filter(|one| &one.channel == channel);
                 here.map(|one| (1.0, $($reference)* one.uncertainty)).collect()
+            }
+            (Q::PlantParameter, Location::Parameter(name)) => {
+                let here = $model.plant_parameters.$iter().filter(|one| &one.name == name);
+                here.map(|one| (one.value, $($reference)* one.uncertainty)).collect()
             }
             _ => vec![],
         };

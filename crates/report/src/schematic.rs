@@ -318,7 +318,7 @@ fn node_box(model: &Model, node: &Node) -> String {
     let acting = model.effects.iter().filter(|effect| match &effect.at {
         Location::Between([a, b]) => *a == node.name || (*b == node.name && a == GROUND),
         Location::Mass(mass) => *mass == node.name,
-        Location::Input(_) | Location::Channel(_) => false,
+        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => false,
     });
     let mut lines = measured_at(model, &node.name);
     lines.extend(acting.map(|effect| effect.kind.replace('_', " ")));

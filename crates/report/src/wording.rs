@@ -16,6 +16,7 @@ pub(crate) fn kind(kind: &str) -> String {
         "stiffness_error" => "wrong stiffness".to_owned(),
         "damping_error" => "wrong damping".to_owned(),
         "input_gain" => "wrong gain".to_owned(),
+        "parameter_error" => "wrong value".to_owned(),
         "coulomb_friction" => "Coulomb friction".to_owned(),
         "stribeck_friction" => "Stribeck friction".to_owned(),
         other => other.replace('_', " "),
@@ -28,6 +29,7 @@ pub(crate) fn place(at: &Location) -> String {
         Location::Mass(m) => format!("on mass {m}"),
         Location::Input(c) => format!("in input {c}"),
         Location::Channel(c) => format!("in channel {c}"),
+        Location::Parameter(p) => format!("of parameter {p}"),
         between @ Location::Between(_) => between.to_string(),
     }
 }

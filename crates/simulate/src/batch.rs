@@ -32,6 +32,14 @@ pub type Prediction = Result<Vec<Vec<f64>>, SimulateError>;
 /// faster where jobs differ in values, states and runs only.
 #[must_use]
 pub fn predict_all(jobs: &[Job<'_>]) -> Vec<Prediction> {
+    // A simulator of the user's has no lanes.
+    if jobs.iter().any(|job| job.simulator.outside.is_some()) {
+        let each = jobs.par_iter().map(|job| match job.smooth {
+            true => job.simulator.predict_smooth(job.run, job.initial),
+            false => job.simulator.predict(job.run, job.initial),
+        });
+        return each.collect();
+    }
     let mut workshop = Workshop::default();
     let prepared: Vec<Result<Prepared, SimulateError>> = jobs
         .iter()

@@ -1,5 +1,7 @@
 //! What drives a simulator in a run.
 
+use std::borrow::Cow;
+
 use simgap_effects::Sampled;
 use simgap_model::{BetweenSamples, Input, InputKind, Node};
 
@@ -28,10 +30,9 @@ impl Simulator {
         })
     }
 
-    /// Forces on the masses and motion of the bases, sample by sample.
-    pub(crate) fn drive(&self, run: &Run) -> Result<Drive, SimulateError> {
-        let n = self.model.dof_count();
-        let mut inputs: Vec<std::borrow::Cow<'_, [f64]>> = run
+    /// The inputs of a run through their maps.
+    pub(crate) fn inputs<'a>(&self, run: &'a Run) -> Vec<Cow<'a, [f64]>> {
+        let mut inputs: Vec<Cow<'_, [f64]>> = run
             .inputs
             .iter()
             .map(|signal| signal.as_slice().into())
@@ -46,6 +47,13 @@ impl Simulator {
             };
             inputs[*input] = map.apply(signal).into();
         }
+        inputs
+    }
+
+    /// Forces on the masses and motion of the bases, sample by sample.
+    pub(crate) fn drive(&self, run: &Run) -> Result<Drive, SimulateError> {
+        let n = self.model.dof_count();
+        let inputs = self.inputs(run);
         let mut drive = Drive {
             dof_force: Vec::with_capacity(run.len * n),
             ..Drive::default()

@@ -5,6 +5,8 @@ use simgap_model::ModelError;
 use simgap_record::RecordError;
 use thiserror::Error;
 
+use crate::plant::PlantError;
+
 /// Why a simulation cannot be run.
 #[derive(Debug, Error)]
 pub enum SimulateError {
@@ -17,6 +19,9 @@ pub enum SimulateError {
     /// An effect of the model file cannot be used.
     #[error(transparent)]
     Effect(#[from] EffectError),
+    /// A simulator of the user's gives no prediction.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
     /// Whoever asked no longer waits for the result.
     #[error("cancelled before it was done")]
     Cancelled,

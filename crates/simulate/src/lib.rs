@@ -1,7 +1,8 @@
 //! A model with its effects driven by a record: predicted outputs.
 //!
 //! [`Run`] brings a record into the units of a model; [`Simulator`] holds the model with its
-//! effects, ready to be marched through runs from any initial state; [`predict_all`] does many at once.
+//! effects, ready to be marched through runs from any initial state; [`predict_all`] does many at once. The plant may be a
+//! simulator of the user's ([`Plant`]).
 //!
 //! ```
 //! use simgap_effects::{Placed, find};
@@ -57,17 +58,25 @@ mod batch;
 mod drive;
 mod driven;
 mod error;
+mod external;
 mod orifice;
 mod outputs;
+mod outside;
+mod plant;
+mod port_law;
 mod predict;
 mod prepare;
 mod prepared;
+mod response;
 mod run;
 mod simulator;
 mod step;
+mod waveform;
 
 pub use batch::{Job, Prediction, predict_all};
 pub use error::SimulateError;
+pub use external::ExternalPlant;
+pub use plant::{Plant, PlantError, PlantRun};
 pub use run::{Mended, Run, input_quantity, output_quantity, output_unit};
 pub use simgap_integrate::exact::lanes::LANES;
 pub use simulator::{MemberPath, Simulator};

@@ -96,7 +96,7 @@ impl OutputPlan {
     #[inline(always)]
     fn across_lanes(&self, dofs: &[Pack], of_base: impl Fn(usize) -> Pack) -> Pack {
         let value = |node| match node {
-            Node::Ground => Pack::ZERO,
+            Node::Ground | Node::Port(_) => Pack::ZERO,
             Node::Dof(i) => dofs[i],
             Node::Base(i) => of_base(i),
             Node::Point(point) => {
@@ -155,7 +155,8 @@ pub(crate) fn output_plans(
             elements: vec![],
         };
         Ok(match form {
-            Form::Displacement => plain(Read::Displacement),
+            // The simulator answers; see `external`.
+            Form::Signal | Form::Displacement => plain(Read::Displacement),
             Form::Velocity => plain(Read::Velocity),
             Form::Acceleration => plain(Read::Acceleration),
             Form::Members { stiffness, damping } => OutputPlan {

@@ -5,6 +5,7 @@ use simgap_integrate::exact::Snapshot;
 use simgap_model::Location;
 
 use crate::batch::excitation;
+use crate::drive::derivative;
 use crate::outputs::{BaseMotion, OutputPlan, across};
 use crate::prepare::Workshop;
 use crate::prepared::Prepared;
@@ -39,6 +40,10 @@ impl Simulator {
         initial: &[f64],
         keep: impl Fn(&dyn SignalMap) -> bool,
     ) -> Result<Vec<Vec<f64>>, SimulateError> {
+        if let Some(outside) = &self.outside {
+            let predicted = outside.predict(run, self.own_inputs(run))?;
+            return Ok(self.through_maps(run, predicted, keep));
+        }
         let ready = Workshop::default().prepare(self, run, initial)?;
         Ok(self.deliver(run, &ready, self.predict_raw(run, &ready), keep))
     }
@@ -72,6 +77,20 @@ impl Simulator {
         keep: impl Fn(&dyn SignalMap) -> bool,
     ) -> Vec<Vec<f64>> {
         self.add_beyond(ready, &mut predicted);
+        self.through_maps(run, predicted, keep)
+    }
+
+    fn own_inputs(&self, run: &Run) -> Vec<Vec<f64>> {
+        let inputs = self.inputs(run).into_iter();
+        inputs.map(std::borrow::Cow::into_owned).collect()
+    }
+
+    fn through_maps(
+        &self,
+        run: &Run,
+        mut predicted: Vec<Vec<f64>>,
+        keep: impl Fn(&dyn SignalMap) -> bool,
+    ) -> Vec<Vec<f64>> {
         for (output, map) in self
             .output_maps
             .iter()
@@ -161,6 +180,16 @@ impl Simulator {
         initial: &[f64],
         at: &Location,
     ) -> Result<MemberPath, SimulateError> {
+        if let Some(outside) = &self.outside {
+            let [displacement, velocity] = outside
+                .path(run, self.own_inputs(run), at)?
+                .unwrap_or_else(|| [vec![0.0; run.len], vec![0.0; run.len]]);
+            return Ok(MemberPath {
+                acceleration: derivative(&velocity, run.time_step_s),
+                displacement,
+                velocity,
+            });
+        }
         let ends = ends(&self.model, at)?;
         let ready = Workshop::default().prepare(self, run, initial)?;
         let mut path = MemberPath::default();
@@ -184,6 +213,17 @@ impl Simulator {
                 .push(across(&acceleration, base.acceleration));
         });
         Ok(path)
+    }
+
+    /// The mass (kg, kg m²) that a force finds at a port of a simulator over one sample of a run; `None` elsewhere.
+    ///
+    /// # Errors
+    /// [`SimulateError::Plant`] when the simulator cannot be simulated or does not answer to forces.
+    pub fn port_inertia(&self, run: &Run, at: &Location) -> Result<Option<f64>, SimulateError> {
+        match &self.outside {
+            Some(outside) => outside.inertia(run, run.inputs.clone(), at),
+            None => Ok(None),
+        }
     }
 
     fn march(

@@ -1,6 +1,7 @@
 //! The model with its effects, ready to be marched through runs.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use simgap_effects::{Action, Placed, SignalMap};
 use simgap_integrate::exact::{Element, ForceLaw, MemberMotion};
@@ -8,7 +9,8 @@ use simgap_model::{Location, Model, Node, same_pair};
 
 use crate::orifice::orifices;
 use crate::outputs::{OutputPlan, output_plans};
-use crate::{Run, SimulateError};
+use crate::outside::Outside;
+use crate::{ExternalPlant, PlantError, Run, SimulateError};
 
 /// A model with its effects.
 pub struct Simulator {
@@ -21,6 +23,8 @@ pub struct Simulator {
     pub(crate) outputs: Vec<OutputPlan>,
     pub(crate) loads: Vec<f64>,
     pub(crate) substeps: usize,
+    /// The simulator of the user's in the place of the exact propagation.
+    pub(crate) outside: Option<Outside>,
     /// Degrees of freedom of the nominal model; those that effects add come after them.
     pub(crate) nominal_dofs: usize,
     /// Displacement and velocity of each added mass at the first sample beyond those with which it
@@ -64,6 +68,20 @@ impl Simulator {
         nominal: &Model,
         effects: &[Placed],
         substeps: usize,
+    ) -> Result<Simulator, SimulateError> {
+        Simulator::with_plant(nominal, effects, substeps, None)
+    }
+
+    /// As [`Simulator::new`] for a model that may stand for a simulator of the user's ([`Model::is_external`]): forces act at its
+    /// ports, and its parameters are those of the model.
+    ///
+    /// # Errors
+    /// [`SimulateError::Model`] as there, [`SimulateError::Plant`] when a simulator is needed and there is none.
+    pub fn with_plant(
+        nominal: &Model,
+        effects: &[Placed],
+        substeps: usize,
+        plant: Option<&Arc<ExternalPlant>>,
     ) -> Result<Simulator, SimulateError> {
         let mut model = nominal.clone();
         let mut laws = Vec::new();
@@ -118,6 +136,17 @@ impl Simulator {
         output_maps.sort_by_key(|(_, map): &(usize, Box<dyn SignalMap>)| map.ends_the_chain());
         // What happens while sampling comes after what happens before, however they are listed.
         output_maps.extend(sampling_maps);
+        let mut outside = None;
+        if model.is_external() {
+            let plant = plant.ok_or_else(|| PlantError::NoPlant {
+                model: nominal.name.clone(),
+            })?;
+            let laws = laws
+                .drain(..)
+                .map(|(at, law)| Ok((ends(&model, &at)?, law)));
+            let laws = laws.collect::<Result<Vec<_>, SimulateError>>()?;
+            outside = Some(Outside::new(plant, nominal, &model, laws.into_iter())?);
+        }
         let mut elements = Vec::new();
         // Gravity and forces on a mass push from outside: no member carries them.
         let mut carried = Vec::new();
@@ -147,6 +176,7 @@ impl Simulator {
             input_maps,
             input_effects,
             output_maps,
+            outside,
             nominal_dofs: nominal.dof_count(),
             added,
         })
@@ -204,7 +234,9 @@ pub(crate) fn ends(model: &Model, at: &Location) -> Result<[Node; 2], SimulateEr
     let pair = match at {
         Location::Between(pair) => pair.clone(),
         Location::Mass(mass) => [mass.clone(), ground],
-        Location::Input(_) | Location::Channel(_) => [ground.clone(), ground],
+        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => {
+            [ground.clone(), ground]
+        }
     };
     Ok(model.resolve_pair(&pair, || at.to_string())?)
 }

@@ -23,6 +23,9 @@ const MOST_SUBSTEPS: usize = 16;
 /// # Errors
 /// [`SimulateError::Model`] when the model has no modes because M is singular.
 pub fn substeps_for(model: &Model, runs: &[Run]) -> Result<usize, SimulateError> {
+    if model.is_external() {
+        return Ok(1);
+    }
     let modes = damped_modes(&hanging(model).tangent_matrices()?)?;
     let mut substeps = 1;
     for run in runs {

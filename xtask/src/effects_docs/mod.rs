@@ -10,7 +10,7 @@ mod signature;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use simgap_effects::{Effect, Family, Parameter, catalogue};
+use simgap_effects::{Effect, Family, Parameter, SiteKind, catalogue};
 use thiserror::Error;
 
 use crate::generated::{self, Change, FileError};
@@ -78,7 +78,9 @@ pub fn differences() -> Result<Vec<String>, EffectsDocsError> {
 pub fn files() -> Result<BTreeMap<String, String>, EffectsDocsError> {
     let mut files = BTreeMap::new();
     let mut pictures = BTreeMap::new();
-    for &effect in catalogue() {
+    // What is wrong with a parameter of a simulator looks as the simulator does.
+    let drawn = |effect: &&&dyn Effect| effect.site() != SiteKind::Parameter;
+    for &effect in catalogue().iter().filter(drawn) {
         let picture = picture(effect)?;
         files.insert(
             format!("{PICTURES}/{}.svg", effect.kind()),

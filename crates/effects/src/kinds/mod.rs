@@ -34,6 +34,7 @@ pub(crate) mod linear_stiffness;
 pub(crate) mod load_error;
 pub(crate) mod mass_error;
 pub(crate) mod outliers;
+pub(crate) mod parameter_error;
 pub(crate) mod pendulum_error;
 pub(crate) mod position_periodic_force;
 pub(crate) mod presliding_friction;

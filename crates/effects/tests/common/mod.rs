@@ -90,12 +90,24 @@ pub(crate) fn model_at(at: &Location) -> Model {
     if plain.check_location(at, "").is_ok() {
         return plain;
     }
-    hydraulic()
+    match at {
+        Location::Parameter(_) => simulator(),
+        _ => hydraulic(),
+    }
 }
 
 /// The model of [`MODEL`] with a hydraulic drive.
 pub(crate) fn hydraulic() -> Model {
     Model::from_toml(&format!("{MODEL}{DRIVE}")).unwrap()
+}
+
+/// A simulator with one parameter.
+pub(crate) fn simulator() -> Model {
+    let text = "schema = \"simgap-model/1\"\nname = \"arm\"\n\
+        [[parameter]]\nname = \"inertia\"\nvalue = 1.2\n\
+        [[port]]\nname = \"joint\"\ndisplacement = \"q\"\nvelocity = \"qd\"\n\
+        [[output]]\nchannel = \"q\"\nkind = \"signal\"\n";
+    Model::from_toml(text).unwrap()
 }
 
 /// Typical sizes, each different from the others so that no two can be mistaken.

@@ -58,7 +58,7 @@ fn rescaled(start: &Start, factor: f64, model: &Model) -> Start {
 /// Whether a wrong nominal value is a factor on a mass or a force.
 fn is_in_proportion(placed: &Placed, model: &Model) -> bool {
     match (placed.effect.nominal_quantity(), &placed.at) {
-        (None | Some(NominalQuantity::OutputGain), _) => false,
+        (None | Some(NominalQuantity::OutputGain | NominalQuantity::PlantParameter), _) => false,
         (Some(NominalQuantity::InputGain), Location::Input(channel)) => {
             let mut inputs = model.inputs.iter();
             inputs.any(|input| input.channel == *channel && input.kind == InputKind::Force)

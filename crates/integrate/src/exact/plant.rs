@@ -105,7 +105,7 @@ impl<'a> Plant<'a> {
                     .collect();
                 for i in 0..m {
                     let at = |node: Node| match node {
-                        Node::Ground | Node::Base(_) => 0.0,
+                        Node::Ground | Node::Base(_) | Node::Port(_) => 0.0,
                         Node::Dof(_) | Node::Point(_) => node.of(&moved, &[]),
                     };
                     // Pushed by −E: a positive force moves its own element back.

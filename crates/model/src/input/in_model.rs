@@ -11,6 +11,7 @@ impl Model {
         match input.kind {
             InputKind::Force => self.check_mass(&input.at, &place),
             InputKind::Displacement => node_name(&place, &input.at),
+            InputKind::Signal => node_name(&place, &input.at),
             InputKind::Command => {
                 let names = self.valves.iter().map(|valve| &valve.name);
                 is_one_of(&place, &input.at, names, "the name of a [[valve]]")
@@ -22,7 +23,8 @@ impl Model {
         }
     }
 
-    /// What an input does to the coordinates: coordinate and weight. Empty for the displacement of a base.
+    /// What an input does to the coordinates: coordinate and weight. Empty for the displacement of a base and for what a
+    /// simulator takes.
     ///
     /// # Errors
     /// [`ModelError::UnknownNode`] and [`ModelError::Shape`] for blocks that are joined to nothing.
@@ -33,7 +35,7 @@ impl Model {
         let at = |node: Option<Node>| node.into_iter().flat_map(Node::terms).collect();
         Ok(match own.kind {
             InputKind::Force => at(self.node(&own.at)),
-            InputKind::Displacement => vec![],
+            InputKind::Displacement | InputKind::Signal => vec![],
             InputKind::Command => {
                 let valve = self.valves.iter().find(|valve| valve.name == own.at);
                 at(valve.and_then(|valve| self.node(&valve.spool())))

@@ -22,6 +22,7 @@ impl Model {
                     pair.map_or([0.0; 2], |pair| self.stiffness_and_damping(pair));
                 (motion(output), Form::Members { stiffness, damping })
             }
+            OutputKind::Signal => ([ground(), ground()], Form::Signal),
             OutputKind::Roll => {
                 let body = at.and_then(|at| self.body_of(at));
                 let body =

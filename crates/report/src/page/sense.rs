@@ -140,7 +140,7 @@ fn surroundings(at: &Location, input: &ReportInput<'_>) -> Surroundings {
     let pair = match at {
         Location::Between(pair) => pair.clone(),
         Location::Mass(mass) => [mass.clone(), simgap_model::GROUND.to_owned()],
-        Location::Input(_) | Location::Channel(_) => return out,
+        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => return out,
     };
     if let Location::Mass(name) = at {
         let here = model.masses.iter().find(|m| &m.name == name);

@@ -95,7 +95,10 @@ fn short(name: &str, at: &simgap_model::Location) -> String {
     use simgap_model::Location;
     let at = match at {
         Location::Between([a, b]) => format!("{a}–{b}"),
-        Location::Mass(name) | Location::Input(name) | Location::Channel(name) => name.clone(),
+        Location::Mass(name)
+        | Location::Input(name)
+        | Location::Channel(name)
+        | Location::Parameter(name) => name.clone(),
     };
     format!("{}, {at}", kind(name))
 }

@@ -211,13 +211,16 @@ fn ends(model: &Model, at: &Location) -> Option<[Node; 2]> {
     match at {
         Location::Between([a, b]) => Some([model.node(a)?, model.node(b)?]),
         Location::Mass(a) => Some([model.node(a)?, Node::Ground]),
-        Location::Input(_) | Location::Channel(_) => None,
+        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => None,
     }
 }
 
 /// (1) and (2) over one step of the record, and what the outputs see of it.
 fn system(model: &Model, at: &Location, step_s: f64) -> Option<System> {
     let n = model.dof_count();
+    if n == 0 {
+        return None;
+    }
     let states = 2 * n + 1;
     let mut rate = Mat::<f64>::zeros(states, states);
     let structure = model.matrices().ok()?;
@@ -296,7 +299,7 @@ fn row(model: &Model, output: &Output, at: &Location, rate: &Mat<f64>) -> Option
         return Some(row);
     }
     let [node, _] = reading.nodes;
-    if matches!(node, Node::Ground | Node::Base(_)) {
+    if matches!(node, Node::Ground | Node::Base(_) | Node::Port(_)) {
         return None;
     }
     match reading.form {
@@ -310,7 +313,7 @@ fn row(model: &Model, output: &Output, at: &Location, rate: &Mat<f64>) -> Option
                 }
             }
         }
-        Form::Members { .. } | Form::Orifice { .. } => return None,
+        Form::Members { .. } | Form::Orifice { .. } | Form::Signal => return None,
     }
     Some(row)
 }

@@ -40,7 +40,7 @@ pub(super) struct Block<'a> {
 #[inline(always)]
 fn at<S: Simd>(simd: S, node: Node, values: &[Pack], bases: &[Pack]) -> Pack {
     match node {
-        Node::Ground => Pack::ZERO,
+        Node::Ground | Node::Port(_) => Pack::ZERO,
         Node::Dof(i) => entry(values, i),
         Node::Base(i) => bases[i],
         Node::Point(point) => {
@@ -79,12 +79,12 @@ fn spread<S: Simd>(simd: S, [a, b]: [Node; 2], force: &Pack, dof_force: &mut [Pa
     match a {
         Node::Dof(i) => change(dof_force, i, |f| (Wide::of(simd, f) - force).pack()),
         Node::Point(point) => push_body(simd, point, Wide::zero(simd) - force, dof_force),
-        Node::Ground | Node::Base(_) => {}
+        Node::Ground | Node::Base(_) | Node::Port(_) => {}
     }
     match b {
         Node::Dof(i) => change(dof_force, i, |f| (Wide::of(simd, f) + force).pack()),
         Node::Point(point) => push_body(simd, point, force, dof_force),
-        Node::Ground | Node::Base(_) => {}
+        Node::Ground | Node::Base(_) | Node::Port(_) => {}
     }
 }
 
