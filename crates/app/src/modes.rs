@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use serde::Serialize;
-use simgap_model::{DampedMode, InputKind, Model, PoleKind, damped_modes_of, pole_kinds};
+use simgap_model::{
+    DampedMode, InputKind, Model, ModelError, PoleKind, damped_modes_of, pole_kinds,
+};
 use simgap_report::chart::{LineChart, Role, Scale, Series};
 
 use crate::AppError;
@@ -108,6 +110,13 @@ pub fn modes(model: &Model, path: &Path) -> Result<Modes, AppError> {
         path: path.into(),
         error,
     };
+    if model.is_external() {
+        return Err(failed(ModelError::Shape {
+            place: format!("model \"{}\"", model.name),
+            found: "a simulator".into(),
+            needed: "a model of masses: a simulator has no matrices".into(),
+        }));
+    }
     let (at, mut notes) = operating_point(model);
     let structure = model.linearise(&at).map_err(failed)?;
     let mut found = damped_modes_of(&structure, &model.first_order()).map_err(failed)?;

@@ -1,9 +1,11 @@
 //! A simulation of a model from the inputs of a record.
 
+use std::sync::Arc;
+
 use simgap_effects::Action;
 use simgap_estimate::{FitOptions, Problem, fit_initial_states, simulator_at};
 use simgap_model::Model;
-use simgap_simulate::{Run, SimulateError, output_unit};
+use simgap_simulate::{ExternalPlant, Run, SimulateError, output_unit};
 
 use crate::AppError;
 use crate::input::{Input, idle_masses};
@@ -25,6 +27,19 @@ pub struct Simulation {
 /// [`AppError::Simulate`] when the record does not fit the model, [`AppError::RunsAway`] when the prediction does not stay
 /// finite.
 pub fn simulate(model: &Model, input: &Input, from_rest: bool) -> Result<Simulation, AppError> {
+    simulate_with(model, input, from_rest, None)
+}
+
+/// As [`simulate`] for a model that may stand for a simulator of the user's.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_with(
+    model: &Model,
+    input: &Input,
+    from_rest: bool,
+    plant: Option<Arc<ExternalPlant>>,
+) -> Result<Simulation, AppError> {
     let Input {
         path,
         record,
@@ -37,6 +52,7 @@ pub fn simulate(model: &Model, input: &Input, from_rest: bool) -> Result<Simulat
     };
     let mut run = Run::new(model, record).map_err(failed)?;
     let mut problem = Problem::new(model, vec![run.clone()]).map_err(failed)?;
+    problem.plant = plant;
     let measured = run.measured.iter().any(Option::is_some);
     let mut notes = idle_masses(model);
     notes.extend(read_notes.iter().cloned());

@@ -16,7 +16,7 @@ use crate::{EstimateError, Problem};
 /// nowhere. Rounding takes as little as 1e-7 of it, and with sticking friction not more.
 const DIFFERENCE: f64 = 1e-6;
 
-/// The same for a simulator of the user's, whose solver may be no more accurate than this squared.
+/// The same for a simulator of the user's, whose solver has a tolerance of its own.
 const DIFFERENCE_OUTSIDE: f64 = 1e-4;
 
 /// The sensitivity of the signals of one run to one entry of θ; as long as the record, and shared by all
@@ -161,11 +161,8 @@ pub(crate) fn discrepancy(problem: &Problem, run: usize, mut predicted: Signals)
 
 /// The size of the step that entry is differentiated with.
 fn difference(problem: &Problem, layout: &Layout, theta: &[f64], entry: usize) -> f64 {
-    let share = match problem.model.is_external() {
-        true => DIFFERENCE_OUTSIDE,
-        false => DIFFERENCE,
-    };
-    let step = share * layout.scale[entry];
+    let outside = problem.model.is_external();
+    let step = [DIFFERENCE, DIFFERENCE_OUTSIDE][usize::from(outside)] * layout.scale[entry];
     if theta[entry] + step > layout.upper[entry] {
         -step
     } else {

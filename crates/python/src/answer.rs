@@ -15,6 +15,7 @@ use simgap_report::summary::{Styles, summary_text};
 use crate::error::raised;
 use crate::frame::{Frame, frame};
 use crate::model::NativeModel;
+use crate::plant::{Raised, called, taken};
 use crate::record::{NativeRecord, options};
 use crate::work::{Link, attended};
 
@@ -78,10 +79,14 @@ struct Asked {
     records: RecordOptions,
     withheld: Vec<String>,
     budget_s: Option<f64>,
+    simulator: Option<Py<PyAny>>,
+    raised: Raised,
 }
 
 impl Asked {
-    fn answer(&self, link: &Link<Result<Answer, AppError>>) -> Result<Answer, AppError> {
+    fn answer(mut self, link: &Link<Result<Answer, AppError>>) -> Result<Answer, AppError> {
+        let simulator = self.simulator.take();
+        let plant = simulator.map(|function| called(function, &self.raised, &link.cancel));
         let judged = match self.check.is_empty() {
             true => &self.train,
             false => &self.check,
@@ -107,6 +112,7 @@ impl Asked {
             withheld: &self.withheld,
             seed: 0,
             is_spent: &is_spent,
+            plant,
             cancel: link.cancel.clone(),
         };
         question.refuse_repeats()?;
@@ -116,7 +122,7 @@ impl Asked {
 
 /// Diagnoses the gap between a model and records.
 #[pyfunction]
-#[pyo3(signature = (model, train, check, withhold, budget_s, map, columns, mend, on_step))]
+#[pyo3(signature = (model, train, check, withhold, budget_s, map, columns, mend, on_step, simulator))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn diagnose(
     py: Python<'_>,
@@ -129,7 +135,9 @@ pub(crate) fn diagnose(
     columns: Option<String>,
     mend: bool,
     on_step: Option<Bound<'_, PyAny>>,
+    simulator: Option<Py<PyAny>>,
 ) -> PyResult<NativeAnswer> {
+    let raised_there = Raised::default();
     let inputs = |records: &[Bound<'_, NativeRecord>]| {
         let records = records.iter();
         records.map(|record| record.get().input.clone()).collect()
@@ -142,8 +150,15 @@ pub(crate) fn diagnose(
         records: options(map, columns, mend),
         withheld: withhold,
         budget_s,
+        simulator,
+        raised: Raised::clone(&raised_there),
     };
-    let answer = attended(py, on_step.as_ref(), move |link| asked.answer(link))?;
+    let answer = attended(py, on_step.as_ref(), move |link| asked.answer(link));
+    // What the simulator raised comes before what it led to.
+    if let Some(error) = taken(&raised_there) {
+        return Err(error);
+    }
+    let answer = answer?;
     Ok(NativeAnswer {
         answer: answer.map_err(raised)?,
     })

@@ -13,6 +13,7 @@ mod error;
 mod fleet;
 mod frame;
 mod model;
+mod plant;
 mod record;
 mod tables;
 mod work;

@@ -58,6 +58,12 @@ impl NativeModel {
         &self.model.name
     }
 
+    /// Whether the model stands for a simulator.
+    #[getter]
+    fn is_simulator(&self) -> bool {
+        self.model.is_external()
+    }
+
     /// Channels of the record that the model names: inputs, then outputs.
     #[getter]
     fn channels(&self) -> (Vec<String>, Vec<String>) {

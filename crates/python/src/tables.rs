@@ -10,24 +10,33 @@ use simgap_effects::catalogue;
 use crate::error::raised;
 use crate::frame::{Frame, frame};
 use crate::model::NativeModel;
+use crate::plant::{Raised, called, taken};
 use crate::record::NativeRecord;
 use crate::work::attended;
 
 /// Columns and notes of the prediction of a model.
 #[pyfunction]
+#[pyo3(signature = (model, record, from_rest, simulator=None))]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
     model: &Bound<'py, NativeModel>,
     record: &Bound<'py, NativeRecord>,
     from_rest: bool,
+    simulator: Option<Py<PyAny>>,
 ) -> PyResult<(Frame<'py>, Vec<String>)> {
+    let raised_there = Raised::default();
+    let keep = Raised::clone(&raised_there);
     let model = Arc::clone(&model.get().model);
     let input = record.get().input.clone();
-    let found = attended(py, None, move |_| {
+    let found = attended(py, None, move |link| {
+        let plant = simulator.map(|function| called(function, &keep, &link.cancel));
         let input = input.of_inputs(&model)?;
-        simulation::simulate(&model, &input, from_rest)
-    })?;
-    let found = found.map_err(|error: AppError| raised(error))?;
+        simulation::simulate_with(&model, &input, from_rest, plant)
+    });
+    if let Some(error) = taken(&raised_there) {
+        return Err(error);
+    }
+    let found = found?.map_err(|error: AppError| raised(error))?;
     Ok((frame(py, found.headers, &found.columns), found.notes))
 }
 

@@ -15,9 +15,9 @@ use crate::response::{Answer, BLOCK, Response, range};
 /// Questions at the most.
 const MOST_CALLS: usize = 60;
 /// The march and the simulator agree where no motion of a port differs by more than this share of its range.
-const AGREED: f64 = 1e-9;
+const AGREED: f64 = 1e-5;
 /// The same after some questions: far below what a diagnosis takes for the accuracy of a simulation.
-const NEARLY_AGREED: f64 = 1e-5;
+const NEARLY_AGREED: f64 = 1e-4;
 const SOME_CALLS: usize = 12;
 /// Sweeps over several laws within a step, and the change that ends them.
 const SWEEPS: usize = 60;

@@ -41,6 +41,7 @@ from ._parts import (
 )
 from ._record import Record, read
 from ._simgap import SimgapError, __version__
+from ._simulator import Simulator
 from ._tables import Kind, KindParameter, Mode, Modes, effects, modes, simulate
 
 __all__ = [
@@ -66,6 +67,7 @@ __all__ = [
     "RecordShare",
     "Rival",
     "SimgapError",
+    "Simulator",
     "State",
     "Time",
     "Unexplained",

@@ -10,16 +10,18 @@ from ._diagnosis import Diagnosis
 from ._model import Model
 from ._progress import Steps
 from ._record import Record, native_records
+from ._simulator import Simulator, SimulatorFunction, asked
 
 #: A record, or the path of one.
 RecordLike = Record | str | os.PathLike
 
 
 def diagnose(
-    model: Model | str | os.PathLike[str],
-    train: RecordLike | Sequence[RecordLike],
+    model: Model | str | os.PathLike[str] | None = None,
+    train: RecordLike | Sequence[RecordLike] = (),
     check: RecordLike | Sequence[RecordLike] = (),
     *,
+    simulator: Simulator | SimulatorFunction | None = None,
     withhold: Iterable[str] = (),
     budget_s: float | None = None,
     progress: bool | Callable[[str], object] = True,
@@ -37,6 +39,10 @@ def diagnose(
     ``columns`` and ``mend`` as in :func:`simgap.read`, and the same input gives the same bytes
     as the command. Records that are judged by have different names.
 
+    ``simulator`` stands for the plant in the place of a model: a :class:`simgap.Simulator`, or the
+    function of one beside a ``model`` of its signals, parameters and ports. Then ``check`` is
+    needed, and an exception of the function comes as the cause of a :class:`SimgapError`.
+
     ``withhold`` takes kinds out of the catalogue. ``budget_s`` ends the search after so many
     seconds with the best answer so far. ``progress`` shows the steps in a terminal or a
     notebook; a function is called with the name of each step.
@@ -45,6 +51,10 @@ def diagnose(
     second. The work takes all cores; the environment variable ``RAYON_NUM_THREADS`` sets
     another number, and the result does not depend on it.
     """
+    if model is None:
+        if not isinstance(simulator, Simulator):
+            raise _simgap.SimgapError("there is no model, needed is one or a simgap.Simulator")
+        model = simulator.model
     if not isinstance(model, Model):
         model = Model.from_file(model)
     mapped = list(map)
@@ -62,5 +72,6 @@ def diagnose(
             columns,
             mend,
             steps.call,
+            asked(simulator),
         )
     return Diagnosis(answer)

@@ -113,7 +113,7 @@ class Model:
     ) -> Model:
         """Adds what drives the machine, as measured: a ``"force"`` on the mass ``at``, N, the
         ``"displacement"`` of the moving base node ``at``, m, the ``"command"`` of the valve ``at``,
-        1, or the ``"set_point"`` of the block ``at``. ``gain`` is in model units per unit of the
+        1, the ``"set_point"`` of the block ``at``, or the ``"signal"`` ``at`` of a simulator. ``gain`` is in model units per unit of the
         channel; without it the unit must fit. ``between_samples`` is ``"smooth"``, ``"linear"`` or
         ``"held"``; where it is not stated a diagnosis asks the records if the signal goes in jumps.
         """
@@ -134,7 +134,7 @@ class Model:
         """Adds what is measured and compared: ``"displacement"``, ``"velocity"`` or
         ``"acceleration"`` of the node ``at``, the ``"force"`` that the members carry between the
         nodes ``between``, the ``"roll"`` of a body, rad, the ``"pressure"``, Pa, or ``"flow"``,
-        m³/s, of a chamber such as ``"left.p1"``, or the ``"spool"`` of a valve, 1. ``gain`` as in
+        m³/s, of a chamber such as ``"left.p1"``, the ``"spool"`` of a valve, 1, or a ``"signal"`` of a simulator. ``gain`` as in
         :meth:`input`.
         """
         pair = None if between is None else list(between)
@@ -265,6 +265,16 @@ class Model:
         """Adds gravity on an arm: torque ``-value sin(angle)``, N m."""
         return self._with("pendulum", {"at": at, "value": value, "uncertainty": uncertainty})
 
+    def parameter(self, name: str, value: float, *, uncertainty: float | None = None) -> Model:
+        """Adds a parameter of a simulator (:class:`simgap.Simulator`), in the simulator's unit."""
+        return self._with("parameter", {"name": name, "value": value, "uncertainty": uncertainty})
+
+    def port(self, name: str, *, displacement: str, velocity: str) -> Model:
+        """Adds a place of a simulator where a force can act, a node of the model: the names of the
+        outputs of the simulator that are its displacement, m or rad, and its velocity, m/s or rad/s."""
+        motion = {"displacement": displacement, "velocity": velocity}
+        return self._with("port", {"name": name, **motion})
+
     def effect(
         self,
         kind: str,
@@ -273,6 +283,7 @@ class Model:
         mass: str | None = None,
         input: str | None = None,
         channel: str | None = None,
+        parameter: str | None = None,
         **parameters: float,
     ) -> Model:
         """Adds an effect of the catalogue (:func:`simgap.effects`) at one place, with its
@@ -282,7 +293,7 @@ class Model:
         """
         pair = None if between is None else list(between)
         at = {"between": pair, "mass": mass, "input": input, "channel": channel}
-        return self._with("effect", {"kind": kind, **at, **parameters})
+        return self._with("effect", {"kind": kind, **at, "parameter": parameter, **parameters})
 
     @property
     def name(self) -> str:
@@ -319,7 +330,9 @@ class Model:
     def _repr_html_(self) -> str:
         """The picture of the machine in a notebook, and its frequency responses."""
         native = self._compiled()
-        return f"<div>{native.picture()}</div><div>{native.responses_svg()}</div>"
+        # A simulator has no matrices that frequency responses could be computed from.
+        responses = "" if native.is_simulator else f"<div>{native.responses_svg()}</div>"
+        return f"<div>{native.picture()}</div>{responses}"
 
 
 def _text(value: str) -> str:

@@ -13,15 +13,17 @@ from ._frame import frame
 from ._model import Model
 from ._parts import made
 from ._record import Record, native_records
+from ._simulator import Simulator, SimulatorFunction, asked
 
 if TYPE_CHECKING:
     import pandas
 
 
 def simulate(
-    model: Model | str | os.PathLike[str],
+    model: Model | str | os.PathLike[str] | None,
     record: Record | str | os.PathLike[str],
     *,
+    simulator: Simulator | SimulatorFunction | None = None,
     from_rest: bool = False,
     map: Iterable[str] = (),
     columns: str | None = None,
@@ -33,11 +35,19 @@ def simulate(
     motion starts as measured outputs of the record say; at rest at zero displacement where
     there are none, or with ``from_rest``. What a reader must know stands in ``attrs["notes"]``.
     ``map``, ``columns`` and ``mend`` as in :func:`simgap.read`.
+
+    A ``simulator`` (:class:`simgap.Simulator`, or its function) stands for the plant of its own
+    model, ``None``, or of one that was corrected: ``simgap.simulate(d.corrected, run,
+    simulator=simulator)``. It begins in the state that it begins in.
     """
+    if model is None:
+        if not isinstance(simulator, Simulator):
+            raise _simgap.SimgapError("there is no model, needed is one or a simgap.Simulator")
+        model = simulator.model
     if not isinstance(model, Model):
         model = Model.from_file(model)
     (native,) = native_records(record, model, True, map, columns, mend)
-    predicted, notes = _simgap.simulate(model._compiled(), native, from_rest)
+    predicted, notes = _simgap.simulate(model._compiled(), native, from_rest, asked(simulator))
     table = frame(predicted)
     table.attrs["notes"] = notes
     return table

@@ -1,0 +1,222 @@
+"""A simulator of the user's in the place of a model."""
+
+import _thread
+import math
+
+import numpy as np
+import pandas
+import pytest
+
+import simgap
+
+STEP = 5e-3
+SAMPLES = 900
+GRAVITY = 1.9  # N m, of an arm hanging down
+INERTIA, DAMPING = 0.12, 0.08  # kg m2, N m s/rad
+FRICTION = 0.11  # N m
+LATE = 0.012  # s
+
+
+def swing(torque, inertia, damping, friction=0.0, substeps=4):
+    """Angle and velocity of an arm under torques that are held between samples."""
+    h = STEP / substeps
+    q = v = 0.0
+    qs, vs = [], []
+    for u in torque:
+        qs.append(q)
+        vs.append(v)
+        for _ in range(substeps):
+            free = v + h / inertia * (u - damping * v - GRAVITY * math.sin(q))
+            # What friction takes of the velocity in a step, at most all of it.
+            most = h / inertia * friction
+            v = free - math.copysign(min(abs(free), most), free)
+            q += h * v
+    return np.array(qs), np.array(vs)
+
+
+def arm(parameters, inputs, forces):
+    q, v = swing(inputs["torque"] + forces["joint"], parameters["inertia"], parameters["damping"])
+    return {"q": q, "qd": v, "unused": "anything"}
+
+
+def simulator(function=arm, **changed):
+    told = {
+        "inputs": ["torque"],
+        "outputs": ["q"],
+        "parameters": {"inertia": INERTIA, "damping": (DAMPING, 0.1)},
+        "ports": {"joint": ("q", "qd")},
+        "name": "arm",
+    }
+    return simgap.Simulator(function, **{**told, **changed})
+
+
+def torque(k):
+    t = STEP * np.arange(SAMPLES)
+    phase = np.random.default_rng(7 + k).uniform(0.0, 2.0 * np.pi, 3)
+    tones = zip([0.35, 0.8, 1.7 + 0.1 * k], [0.9, 0.6, 0.4], phase)
+    # It sets in gently: the arm hangs at rest before.
+    return (1.0 - np.exp(-2.0 * t)) * sum(a * np.sin(2 * np.pi * f * t + p) for f, a, p in tones)
+
+
+def record(k, friction=FRICTION, late=LATE, noise=3e-4):
+    t = STEP * np.arange(SAMPLES)
+    u = torque(k)
+    q, _ = swing(u, INERTIA, DAMPING, friction, substeps=40)
+    q = np.interp(t - late, t, q) + np.random.default_rng(k).normal(0.0, noise, SAMPLES)
+    return simgap.Record({"t": t, "torque": u, "q": q}, {"torque": "N m", "q": "rad"}, name=f"run{k}")
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return [record(k) for k in range(3)]
+
+
+@pytest.fixture(scope="module")
+def found(runs):
+    return simgap.diagnose(simulator=simulator(), train=runs[:2], check=runs[2:], progress=False)
+
+
+def test_friction_and_a_late_sensor_are_named(found):
+    named = {effect.kind: effect for effect in found.effects}
+    assert set(named) == {"coulomb_friction", "sensor_delay"}, str(found)
+    friction = named["coulomb_friction"]
+    assert friction.at == {"between": ["joint", "ground"]}
+    value = friction.parameters["friction_force_n"].value
+    assert value == pytest.approx(FRICTION, rel=0.05)
+    delay = named["sensor_delay"].parameters["delay_s"].value
+    assert delay == pytest.approx(LATE, rel=0.1)
+    assert found.gap.closed > 0.95
+
+
+def test_the_corrected_model_gives_the_corrected_predictions(found, runs):
+    corrected = found.corrected
+    assert corrected.to_toml().count("[[port]]") == 1
+    predicted = simgap.simulate(corrected, runs[2], simulator=arm)
+    expected = found.predictions["run2"]["q corrected [rad]"]
+    assert np.abs(predicted["q [rad]"] - expected).max() < 1e-6
+    assert "joint" in found.to_html()
+
+
+def test_the_function_is_called_as_promised(runs):
+    seen = []
+
+    def function(parameters, inputs, forces):
+        seen.append((parameters, inputs, forces))
+        return pandas.DataFrame(arm(parameters, inputs, forces))
+
+    predicted = simgap.simulate(None, runs[0], simulator=simulator(function))
+    parameters, inputs, forces = seen[0]
+    assert parameters == {"inertia": INERTIA, "damping": DAMPING}
+    assert set(inputs) == {"torque", "t"} and set(forces) == {"joint"}
+    for array in [*inputs.values(), *forces.values()]:
+        assert array.dtype == np.float64 and array.shape == (SAMPLES,)
+    assert np.allclose(inputs["t"], STEP * np.arange(SAMPLES))
+    assert not forces["joint"].any()
+    assert len(seen) == 1
+    q, _ = swing(torque(0), INERTIA, DAMPING)
+    assert np.array_equal(predicted["q [rad]"], q)
+
+
+def test_columns_are_converted_and_named_as_the_function_has_them(runs):
+    run = runs[0]
+    data = {"t": run.t, "M": 1e3 * run["torque"], "phi": np.degrees(run["q"])}
+    other = simgap.Record(data, {"M": "N mm", "phi": "deg"})
+    named = simulator(inputs={"M": "torque"}, outputs={"phi": "q"})
+    predicted = simgap.simulate(None, other, simulator=named)
+    q, _ = swing(torque(0), INERTIA, DAMPING)
+    assert np.allclose(predicted["phi [rad]"], q, atol=1e-9)
+
+
+def test_a_model_of_parts_takes_a_function(runs):
+    model = (
+        simgap.Model("arm")
+        .input("torque", at="torque", kind="signal")
+        .output("q", kind="signal")
+        .parameter("inertia", INERTIA)
+        .parameter("damping", DAMPING, uncertainty=0.1)
+        .port("joint", displacement="q", velocity="qd")
+        .effect("coulomb_friction", between=("joint", "ground"), friction_force_n=FRICTION)
+    )
+    predicted = simgap.simulate(model, runs[0], simulator=arm)
+    q, _ = swing(torque(0), INERTIA, DAMPING, FRICTION)
+    # Held over a sample here, over a quarter of one there.
+    assert np.abs(predicted["q [rad]"] - q).max() < 0.01 * np.abs(q).max()
+    assert "<svg" in model._repr_html_()
+
+
+def refused(function, runs, **changed):
+    with pytest.raises(simgap.SimgapError) as raised:
+        simgap.diagnose(
+            simulator=simulator(function, **changed), train=runs[0], check=runs[1], progress=False
+        )
+    assert "\n" not in str(raised.value)
+    return raised.value
+
+
+def test_an_exception_comes_back_as_it_is(runs):
+    def function(parameters, inputs, forces):
+        raise RuntimeError("the licence has expired")
+
+    error = refused(function, runs)
+    assert str(error) == "the simulator failed: RuntimeError: the licence has expired"
+    assert isinstance(error.__cause__, RuntimeError)
+
+
+def test_an_exception_in_the_middle_ends_the_work(runs):
+    calls = []
+
+    def function(parameters, inputs, forces):
+        calls.append(parameters)
+        if len(calls) > 20:
+            raise RuntimeError("enough")
+        return arm(parameters, inputs, forces)
+
+    assert isinstance(refused(function, runs).__cause__, RuntimeError)
+    assert len(calls) < 30
+
+
+def test_answers_that_are_none_are_told_in_one_line(runs):
+    cases = [
+        (lambda p, i, f: {"q": i["t"]}, "returned no output 'qd', found is: q"),
+        (lambda p, i, f: {"q": i["t"][:5], "qd": i["t"]}, "'q' of the simulator has shape (5,)"),
+        (lambda p, i, f: {"q": ["a"] * SAMPLES, "qd": i["t"]}, "'q' of the simulator holds no"),
+        (lambda p, i, f: None, "the simulator returned NoneType"),
+        (lambda p, i, f: {"q": i["t"], "qd": np.log(i["t"] - 1.0)}, "'qd' of the simulator is NaN"),
+        (
+            lambda p, i, f: {"q": i["torque"], "qd": i["torque"]},
+            "a force at port \"joint\" does not move",
+        ),
+    ]
+    with np.errstate(all="ignore"):
+        for function, line in cases:
+            assert line in str(refused(function, runs)), line
+
+
+def test_what_a_simulator_needs_is_told(runs):
+    with pytest.raises(simgap.SimgapError, match="needed is a check record"):
+        simgap.diagnose(simulator=simulator(), train=runs[:2], progress=False)
+    with pytest.raises(simgap.SimgapError, match="simgap.Simulator"):
+        simgap.diagnose(simulator=arm, train=runs[:2], check=runs[2], progress=False)
+    with pytest.raises(simgap.SimgapError, match="needed is the simulator itself"):
+        simgap.diagnose(simulator().model, train=runs[:2], check=runs[2], progress=False)
+    with pytest.raises(simgap.SimgapError, match="called 't'"):
+        simulator(inputs=["t"])
+    with pytest.raises(simgap.SimgapError, match="parameter.*damping"):
+        simulator(parameters={"damping": (DAMPING, -1.0)})
+    with pytest.raises(simgap.SimgapError, match="no matrices"):
+        simgap.modes(simulator().model)
+
+
+def test_an_interrupt_ends_the_work(runs):
+    calls = []
+
+    def function(parameters, inputs, forces):
+        calls.append(parameters)
+        if len(calls) == 10:
+            _thread.interrupt_main()
+        return arm(parameters, inputs, forces)
+
+    with pytest.raises(KeyboardInterrupt):
+        simgap.diagnose(
+            simulator=simulator(function), train=runs[:2], check=runs[2], progress=False
+        )
