@@ -15,7 +15,7 @@ import numpy as np
 
 import simgap
 
-STEP, SAMPLES = 4e-3, 1200
+STEP, SAMPLES = 5e-3, 800
 FRICTION, LATE = 0.05, 8e-3  # N m, s
 
 MODEL = """

@@ -10,27 +10,37 @@ import pytest
 import simgap
 
 STEP = 5e-3
-SAMPLES = 900
-GRAVITY = 1.9  # N m, of an arm hanging down
-INERTIA, DAMPING = 0.12, 0.08  # kg m2, N m s/rad
+SAMPLES = 800
+INERTIA, STIFFNESS, DAMPING = 0.12, 7.0, 0.15  # kg m2, N m/rad, N m s/rad
 FRICTION = 0.11  # N m
 LATE = 0.012  # s
 
 
-def swing(torque, inertia, damping, friction=0.0, substeps=4):
-    """Angle and velocity of an arm under torques that are held between samples."""
+def moves(inertia, damping, h):
+    """What a step of an arm on a spring does to its angle and velocity, and what one newton metre adds."""
+    decay = damping / (2.0 * inertia)
+    omega = math.sqrt(STIFFNESS / inertia - decay**2)
+    e, c, s = math.exp(-decay * h), math.cos(omega * h), math.sin(omega * h)
+    a = e * (c + decay / omega * s), e * s / omega
+    b = -e * s / omega * STIFFNESS / inertia, e * (c - decay / omega * s)
+    return a, b, ((1.0 - a[0]) / STIFFNESS, -b[0] / STIFFNESS)
+
+
+def swing(torque, inertia, damping, friction=0.0, substeps=1):
+    """Angle and velocity under torques that are held between samples: exact without friction."""
     h = STEP / substeps
+    (aq, av), (bq, bv), (gq, gv) = moves(inertia, damping, h)
+    most = h / inertia * friction
     q = v = 0.0
     qs, vs = [], []
-    for u in torque:
+    for u in torque.tolist():
         qs.append(q)
         vs.append(v)
         for _ in range(substeps):
-            free = v + h / inertia * (u - damping * v - GRAVITY * math.sin(q))
-            # What friction takes of the velocity in a step, at most all of it.
-            most = h / inertia * friction
-            v = free - math.copysign(min(abs(free), most), free)
-            q += h * v
+            q, v = aq * q + av * v + gq * u, bq * q + bv * v + gv * u
+            if most:
+                # What friction takes of the velocity in a step, at most all of it.
+                v -= math.copysign(min(abs(v), most), v)
     return np.array(qs), np.array(vs)
 
 
@@ -54,14 +64,14 @@ def torque(k):
     t = STEP * np.arange(SAMPLES)
     phase = np.random.default_rng(7 + k).uniform(0.0, 2.0 * np.pi, 3)
     tones = zip([0.35, 0.8, 1.7 + 0.1 * k], [0.9, 0.6, 0.4], phase)
-    # It sets in gently: the arm hangs at rest before.
+    # It sets in gently: the arm is at rest before.
     return (1.0 - np.exp(-2.0 * t)) * sum(a * np.sin(2 * np.pi * f * t + p) for f, a, p in tones)
 
 
 def record(k, friction=FRICTION, late=LATE, noise=3e-4):
     t = STEP * np.arange(SAMPLES)
     u = torque(k)
-    q, _ = swing(u, INERTIA, DAMPING, friction, substeps=40)
+    q, _ = swing(u, INERTIA, DAMPING, friction, substeps=20)
     q = np.interp(t - late, t, q) + np.random.default_rng(k).normal(0.0, noise, SAMPLES)
     return simgap.Record({"t": t, "torque": u, "q": q}, {"torque": "N m", "q": "rad"}, name=f"run{k}")
 
@@ -138,8 +148,8 @@ def test_a_model_of_parts_takes_a_function(runs):
         .effect("coulomb_friction", between=("joint", "ground"), friction_force_n=FRICTION)
     )
     predicted = simgap.simulate(model, runs[0], simulator=arm)
-    q, _ = swing(torque(0), INERTIA, DAMPING, FRICTION)
-    # Held over a sample here, over a quarter of one there.
+    q, _ = swing(torque(0), INERTIA, DAMPING, FRICTION, substeps=20)
+    # The same friction, at the end of each step there.
     assert np.abs(predicted["q [rad]"] - q).max() < 0.01 * np.abs(q).max()
     assert "<svg" in model._repr_html_()
 
@@ -176,20 +186,22 @@ def test_an_exception_in_the_middle_ends_the_work(runs):
 
 
 def test_answers_that_are_none_are_told_in_one_line(runs):
+    def broken(t):
+        return np.where(t < 1.0, 0.0, np.nan)
+
     cases = [
-        (lambda p, i, f: {"q": i["t"]}, "returned no output 'qd', found is: q"),
-        (lambda p, i, f: {"q": i["t"][:5], "qd": i["t"]}, "'q' of the simulator has shape (5,)"),
-        (lambda p, i, f: {"q": ["a"] * SAMPLES, "qd": i["t"]}, "'q' of the simulator holds no"),
+        (lambda p, i, f: {"q": i["t"]}, 'returned no output "qd", found is: q'),
+        (lambda p, i, f: {"q": i["t"][:5], "qd": i["t"]}, '"q" of the simulator has shape (5,)'),
+        (lambda p, i, f: {"q": ["a"] * SAMPLES, "qd": i["t"]}, '"q" of the simulator holds no'),
         (lambda p, i, f: None, "the simulator returned NoneType"),
-        (lambda p, i, f: {"q": i["t"], "qd": np.log(i["t"] - 1.0)}, "'qd' of the simulator is NaN"),
+        (lambda p, i, f: {"q": i["t"], "qd": broken(i["t"])}, '"qd" of the simulator is NaN at 1 s'),
         (
             lambda p, i, f: {"q": i["torque"], "qd": i["torque"]},
-            "a force at port \"joint\" does not move",
+            'a force at port "joint" does not move',
         ),
     ]
-    with np.errstate(all="ignore"):
-        for function, line in cases:
-            assert line in str(refused(function, runs)), line
+    for function, line in cases:
+        assert line in str(refused(function, runs)), line
 
 
 def test_what_a_simulator_needs_is_told(runs):

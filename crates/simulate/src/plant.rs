@@ -1,8 +1,5 @@
 //! A plant that is simulated from outside: what a simulator of the user's is asked and answers.
 
-use std::collections::hash_map::DefaultHasher;
-use std::hash::Hasher;
-
 use thiserror::Error;
 
 /// What a simulator is asked: the parameters, what drives it, and the forces at its ports, sample by sample.
@@ -92,6 +89,14 @@ pub enum PlantError {
         /// The port.
         port: String,
     },
+    /// A force at a port makes the motion there grow beyond all bounds.
+    #[error(
+        "the motion of port \"{port}\" grows beyond all bounds under the force there, needed is one that the simulator can bear"
+    )]
+    RunsAway {
+        /// The port.
+        port: String,
+    },
     /// The force at a port and the motion there do not settle.
     #[error(
         "the forces at the ports did not settle in {calls} simulations: the motion of port \"{port}\" still moves by {moved:.1e} of \
@@ -107,25 +112,23 @@ pub enum PlantError {
     },
 }
 
-/// The arguments of a simulation, hashed twice.
-pub(crate) type Key = [u64; 2];
+/// The arguments of a simulation, hashed.
+pub(crate) type Key = u128;
 
 impl PlantRun<'_> {
+    /// FNV-1a over the words of the arguments, in 128 bits.
     pub(crate) fn key(&self) -> Key {
-        [0, 1].map(|salt| {
-            let mut hasher = DefaultHasher::new();
-            hasher.write_u64(salt);
-            hasher.write_u64(self.time_step_s.to_bits());
-            hasher.write_usize(self.len);
-            for (_, value) in self.parameters {
-                hasher.write_u64(value.to_bits());
-            }
-            let signals = self.inputs.iter().chain(self.forces);
-            for value in signals.flat_map(|(_, signal)| signal) {
-                // No force is none, whatever its sign.
-                hasher.write_u64((value + 0.0).to_bits());
-            }
-            hasher.finish()
+        const START: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
+        const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
+        let signals = self.inputs.iter().chain(self.forces);
+        let values = signals.flat_map(|(_, signal)| signal);
+        let values = self.parameters.iter().map(|(_, value)| value).chain(values);
+        // No force is none, whatever its sign.
+        let words = values.map(|value| (value + 0.0).to_bits());
+        let sizes = [self.time_step_s.to_bits(), self.len as u64];
+        let all = sizes.into_iter().chain(words);
+        all.fold(START, |hash, word| {
+            (hash ^ u128::from(word)).wrapping_mul(PRIME)
         })
     }
 
@@ -143,7 +146,8 @@ impl PlantRun<'_> {
                 return Err(PlantError::NotFinite {
                     output: output.clone(),
                     found: signal[sample],
-                    time_s: sample as f64 * self.time_step_s,
+                    // To the microsecond: a stamp without digits that no clock has.
+                    time_s: (sample as f64 * self.time_step_s * 1e6).round() / 1e6,
                 });
             }
         }

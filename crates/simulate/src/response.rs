@@ -43,6 +43,7 @@ pub(crate) struct Response {
     /// Transforms of the response of the motion of each port from its lag on, by octave, then by port that pushes, then port
     /// and displacement or velocity.
     octaves: Vec<Octave>,
+    whole: Whole,
 }
 
 struct Octave {
@@ -96,7 +97,14 @@ impl Response {
             lag,
             ports: ports.to_vec(),
             octaves: vec![],
+            whole: Whole::new(run.len),
         };
+        let of_port = |unit: &Vec<Vec<f64>>| {
+            let outputs = unit.iter();
+            outputs.map(|of| response.whole.transformed(of)).collect()
+        };
+        let spectra: Vec<Vec<Vec<Complex64>>> = response.unit.iter().map(of_port).collect();
+        response.whole.spectra = spectra;
         response.transform(run.len);
         Ok(response)
     }
@@ -188,39 +196,54 @@ impl Response {
         }
     }
 
-    /// What forces beyond those of a simulation add to an output, (2).
-    pub(crate) fn beyond(&self, output: usize, forces: &[Vec<f64>]) -> Vec<f64> {
-        let len = forces.first().map_or(0, Vec::len);
+    /// Adds to every output what forces beyond those of a simulation do, (2).
+    pub(crate) fn add_beyond(&self, forces: &[Vec<f64>], outputs: &mut [Vec<f64>]) {
+        let size = self.whole.size;
+        let transformed: Vec<Vec<Complex64>> = forces
+            .iter()
+            .map(|force| self.whole.transformed(force))
+            .collect();
+        for (s, output) in outputs.iter_mut().enumerate() {
+            let mut sum = vec![Complex64::default(); size];
+            for (force, spectra) in transformed.iter().zip(&self.whole.spectra) {
+                for ((sum, a), b) in sum.iter_mut().zip(force).zip(&spectra[s]) {
+                    *sum += a * b;
+                }
+            }
+            self.whole.inverse.process(&mut sum);
+            let values = output.iter_mut().zip(&sum);
+            values.for_each(|(value, more)| *value += more.re / size as f64);
+        }
+    }
+}
+
+/// Convolutions over a whole run.
+struct Whole {
+    size: usize,
+    forward: Arc<dyn Fft<f64>>,
+    inverse: Arc<dyn Fft<f64>>,
+    /// Transforms of the responses, by port and output.
+    spectra: Vec<Vec<Vec<Complex64>>>,
+}
+
+impl Whole {
+    fn new(len: usize) -> Whole {
         let size = (2 * len).next_power_of_two();
         let mut planner = FftPlanner::new();
-        let (forward, inverse) = (
-            planner.plan_fft_forward(size),
-            planner.plan_fft_inverse(size),
-        );
-        let transformed = |signal: &[f64]| {
-            let mut values: Vec<Complex64> = signal
-                .iter()
-                .map(|value| Complex64::new(*value, 0.0))
-                .collect();
-            values.resize(size, Complex64::default());
-            forward.process(&mut values);
-            values
-        };
-        let mut sum = vec![Complex64::default(); size];
-        for (force, unit) in forces.iter().zip(&self.unit) {
-            if force.iter().all(|value| *value == 0.0) {
-                continue;
-            }
-            let (force, unit) = (transformed(force), transformed(&unit[output]));
-            for ((sum, a), b) in sum.iter_mut().zip(force).zip(unit) {
-                *sum += a * b;
-            }
+        Whole {
+            size,
+            forward: planner.plan_fft_forward(size),
+            inverse: planner.plan_fft_inverse(size),
+            spectra: vec![],
         }
-        inverse.process(&mut sum);
-        sum.iter()
-            .take(len)
-            .map(|value| value.re / size as f64)
-            .collect()
+    }
+
+    fn transformed(&self, signal: &[f64]) -> Vec<Complex64> {
+        let values = signal.iter().map(|value| Complex64::new(*value, 0.0));
+        let mut values: Vec<Complex64> = values.collect();
+        values.resize(self.size, Complex64::default());
+        self.forward.process(&mut values);
+        values
     }
 }
 

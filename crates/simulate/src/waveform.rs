@@ -16,9 +16,13 @@ use crate::response::{Answer, BLOCK, Response, range};
 const MOST_CALLS: usize = 60;
 /// The march and the simulator agree where no motion of a port differs by more than this share of its range.
 const AGREED: f64 = 1e-5;
+/// The same where nothing is left to be put right.
+const SAME: f64 = 1e-9;
 /// The same after some questions: far below what a diagnosis takes for the accuracy of a simulation.
 const NEARLY_AGREED: f64 = 1e-4;
 const SOME_CALLS: usize = 12;
+/// Motion of a port beyond this many times its range without forces is none that a simulator should be asked for.
+const RUNS_AWAY: f64 = 1e3;
 /// Sweeps over several laws within a step, and the change that ends them.
 const SWEEPS: usize = 60;
 const SETTLED: f64 = 1e-12;
@@ -43,29 +47,27 @@ pub(crate) fn settle(
     name: impl Fn(usize) -> String,
 ) -> Result<Vec<Vec<f64>>, PlantError> {
     let mut forces = vec![vec![0.0; times.len]; response.ports.len()];
-    let mut answer = ask(&forces)?;
+    let nominal = ask(&forces)?;
+    let mut answer = Answer::clone(&nominal);
     let mut apart = (0, f64::INFINITY);
     for call in 0..MOST_CALLS {
         let mut march = March::new(laws, response, times, &answer, &forces);
         let stretch = BLOCK << response.octave_of(march.steps);
         march.solve(0, stretch);
-        apart = march.apart(&answer);
+        if let Some(port) = march.runs_away(&nominal) {
+            return Err(PlantError::RunsAway { port: name(port) });
+        }
+        apart = far(&march.motion, response, &answer);
         let enough = match call {
             0..SOME_CALLS => AGREED,
             _ => NEARLY_AGREED,
         };
         if apart.1 <= enough {
             let mut outputs = answer.to_vec();
-            for (output, signal) in outputs.iter_mut().enumerate() {
-                let beyond = response.beyond(output, &march.change);
-                signal
-                    .iter_mut()
-                    .zip(beyond)
-                    .for_each(|(value, more)| *value += more);
-            }
+            response.add_beyond(&march.change, &mut outputs);
             return Ok(outputs);
         }
-        let change = march.change;
+        let (change, motion) = (march.change, march.motion);
         for (force, change) in forces.iter_mut().zip(&change) {
             force
                 .iter_mut()
@@ -73,6 +75,10 @@ pub(crate) fn settle(
                 .for_each(|(force, change)| *force += change);
         }
         answer = ask(&forces)?;
+        // Where the simulator is linear the march has said it all.
+        if far(&motion, response, &answer).1 <= SAME {
+            return Ok(answer.to_vec());
+        }
     }
     Err(PlantError::Unsettled {
         port: name(apart.0),
@@ -239,25 +245,37 @@ impl<'a> March<'a> {
         }
     }
 
-    /// The port whose motion is farthest from that of the answer, and how far, over its range.
-    fn apart(&self, answer: &Answer) -> (usize, f64) {
-        let ports = self.motion.iter().zip(&self.response.ports).enumerate();
-        let far = ports.map(|(p, (motion, signals))| {
-            let of_signal = [0, 1].map(|k| {
-                let signal = &answer[signals[k]];
-                let late = signal.get(self.response.lag..).unwrap_or_default();
-                let apart = motion[k].iter().zip(late).map(|(a, b)| (a - b).abs());
-                let size = f64::max(range(signal), range(&motion[k]));
-                apart.fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE)
-            });
-            (p, of_signal[0].max(of_signal[1]))
+    /// A port whose motion grows beyond all bounds.
+    fn runs_away(&self, nominal: &Answer) -> Option<usize> {
+        let ports = self.motion.iter().zip(&self.response.ports);
+        let mut beyond = ports.map(|(motion, signals)| {
+            motion.iter().zip(signals).any(|(motion, signal)| {
+                let most = match RUNS_AWAY * range(&nominal[*signal]) {
+                    most if most > 0.0 => most,
+                    _ => f64::MAX,
+                };
+                motion.iter().any(|value| !value.is_finite()) || range(motion) > most
+            })
         });
-        far.fold((0, 0.0), |most, one| {
-            if one.1 > most.1 || one.1.is_nan() {
-                one
-            } else {
-                most
-            }
-        })
+        beyond.position(|beyond| beyond)
     }
+}
+
+/// The port whose motion (from the lag on) is farthest from that of an answer, and how far, over its range.
+fn far(motion: &[[Vec<f64>; 2]], response: &Response, answer: &Answer) -> (usize, f64) {
+    let ports = motion.iter().zip(&response.ports).enumerate();
+    let far = ports.map(|(p, (motion, signals))| {
+        let of_signal = [0, 1].map(|k| {
+            let signal = &answer[signals[k]];
+            let late = signal.get(response.lag..).unwrap_or_default();
+            let apart = motion[k].iter().zip(late).map(|(a, b)| (a - b).abs());
+            let size = f64::max(range(signal), range(&motion[k]));
+            apart.fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE)
+        });
+        (p, of_signal[0].max(of_signal[1]))
+    });
+    far.fold(
+        (0, 0.0),
+        |most, one| if one.1 > most.1 { one } else { most },
+    )
 }

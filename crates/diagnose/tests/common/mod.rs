@@ -134,7 +134,7 @@ pub(crate) fn record(
         let unit = match drive.kind {
             InputKind::Force => "N",
             InputKind::Displacement => "m",
-            InputKind::Command | InputKind::SetPoint => "1",
+            InputKind::Command | InputKind::SetPoint | InputKind::Signal => "1",
         };
         let values = match k {
             0 if input_noise > 0.0 => noisy(&input, input_noise),
@@ -152,6 +152,7 @@ pub(crate) fn record(
             OutputKind::Roll => "rad",
             OutputKind::Pressure => "Pa",
             OutputKind::Flow => "m^3/s",
+            OutputKind::Signal => "1",
             OutputKind::Spool => "1",
         };
         let values = noisy(signal, NOISE);

@@ -4,6 +4,9 @@ use simgap_model::{Location, NominalQuantity};
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
+/// Simulators divide by their parameters.
+const LEAST: f64 = 0.01;
+
 /// A parameter of a simulator of the user's differs from its nominal value by a factor.
 pub(crate) struct ParameterError;
 
@@ -29,7 +32,14 @@ impl Effect for ParameterError {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::factor("parameter_factor")] }
+        &[Parameter {
+            name: "parameter_factor",
+            unit: "1",
+            lower: LEAST,
+            upper: 1.0 / LEAST,
+            neutral: Some(1.0),
+            per_record: false,
+        }]
     }
 
     fn starts(&self, _: &SiteScale) -> Vec<Vec<f64>> {

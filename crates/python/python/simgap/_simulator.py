@@ -144,17 +144,17 @@ def _output(found: Any, name: str, samples: int) -> _Array:
     if name not in found:
         known = ", ".join(str(key) for key in found.keys())
         raise _simgap.SimgapError(
-            f"the simulator returned no output '{name}', found is: {known or 'nothing'}"
+            f'the simulator returned no output "{name}", found is: {known or "nothing"}'
         )
     try:
         array = np.asarray(found[name], dtype=np.float64)
     except (TypeError, ValueError):
         raise _simgap.SimgapError(
-            f"output '{name}' of the simulator holds no numbers, needed is an array of float64"
+            f'output "{name}" of the simulator holds no numbers, needed is an array of float64'
         ) from None
     if array.shape != (samples,):
         raise _simgap.SimgapError(
-            f"output '{name}' of the simulator has shape {array.shape}, needed is ({samples},): "
+            f'output "{name}" of the simulator has shape {array.shape}, needed is ({samples},): '
             "one value for each sample of the inputs"
         )
     return np.ascontiguousarray(array)
