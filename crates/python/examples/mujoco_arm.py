@@ -15,7 +15,7 @@ import numpy as np
 
 import simgap
 
-STEP, SAMPLES = 5e-3, 800
+STEP, SAMPLES = 6e-3, 500
 FRICTION, LATE = 0.05, 8e-3  # N m, s
 
 MODEL = """
@@ -35,6 +35,13 @@ MODEL = """
   <actuator><motor name="motor" joint="shoulder"/></actuator>
 </mujoco>
 """
+
+# What a mechanic would think of. The whole catalogue takes six times as many simulations.
+SUSPECTED = {
+    "parameter_error", "input_gain", "input_delay", "coulomb_friction", "viscous_damping", "quadratic_damping",
+    "linear_stiffness", "cubic_stiffness", "constant_force", "end_stop", "sensor_delay", "sensor_lag", "sensor_gain",
+    "sensor_bias", "sensor_drift", "clipping",
+}
 
 
 def stepped(model, data, torque, forces, every=1):
@@ -99,7 +106,8 @@ def main():
     )
     runs = [record(k) for k in range(3)]
     begun = time.perf_counter()
-    d = simgap.diagnose(simulator=simulator, train=runs[:2], check=runs[2])
+    others = [kind for kind in simgap.effects() if kind not in SUSPECTED]
+    d = simgap.diagnose(simulator=simulator, train=runs[:2], check=runs[2], withhold=others)
     print(d)
     print(f"{arm.calls} simulations, {time.perf_counter() - begun:.0f} s")
     d.save("mujoco-arm")

@@ -170,6 +170,10 @@ fn apart([one, other]: &[Vec<f64>; 2]) -> f64 {
 /// The model file reads held forces as smooth ones that push as much: off by (ωh)⁶ and what the first sample sets off.
 const SAME: f64 = 2e-3;
 
+/// A friction F that is held from sample to sample turns up to a sample h late where the motion turns: by 2 F h / m of the
+/// velocity each time, about 1 % of 0.4 m/s here.
+const HELD: f64 = 1e-2;
+
 #[test]
 fn verify_a_plant_outside_predicts_as_the_model_file_does() {
     let (found, calls) = both(&[]);
@@ -204,8 +208,7 @@ fn verify_forces_at_a_port_act_as_they_do_in_a_model_file() {
         let kind = law.effect.kind();
         let plain = both(&[]).0;
         let (found, calls) = both(&[law]);
-        // A force that is held from sample to sample is half a sample off where it jumps.
-        assert!(apart(&found) < 5e-3, "{kind}: {}", apart(&found));
+        assert!(apart(&found) < HELD, "{kind}: {}", apart(&found));
         assert!(
             apart(&[plain[0].clone(), found[0].clone()]) > 0.02,
             "{kind} does nothing"
@@ -221,7 +224,7 @@ fn verify_two_laws_at_a_port_act_together() {
         placed("viscous_damping", at_joint(), &[3.0]),
     ];
     let (found, _) = both(&laws);
-    assert!(apart(&found) < 5e-3, "{}", apart(&found));
+    assert!(apart(&found) < HELD, "{}", apart(&found));
 }
 
 /// A hardening spring of the plant itself: the response about its own motion is wrong, and the answers put it right.
@@ -242,7 +245,7 @@ fn verify_forces_settle_where_the_plant_is_not_linear() {
     let reference = Simulator::new(&inside, &[given, laws[0].clone()], 16).unwrap();
     let reference = reference.predict(&run, &[]).unwrap().swap_remove(0);
     let found = apart(&[reference, settled]);
-    assert!(found < 5e-3, "{found}");
+    assert!(found < HELD, "{found}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -49,8 +50,8 @@ class Simulator:
     the stamps ``t``, in SI. What it returns beside these is not looked at.
 
     The same arguments have to give the same answer, and every call begins in the same state: in that
-    in which the records begin. It is called thousands of times, from several threads but from one
-    at a time unless it frees the interpreter; equal questions are asked once.
+    in which the records begin. It is called thousands of times, from several threads but never by
+    two at a time; equal questions are asked once.
 
     ``inputs`` and ``outputs`` are names of columns of the records, or mappings of columns to the
     names that the function uses. ``parameters`` are the values that may be wrong: a value that is
@@ -115,6 +116,8 @@ def asked(simulator: Simulator | SimulatorFunction | None) -> Callable[..., list
     if simulator is None:
         return None
     function = simulator.function if isinstance(simulator, Simulator) else simulator
+    # A simulator that frees the interpreter while it steps has one state all the same.
+    turn = threading.Lock()
 
     def call(
         parameters: dict[str, float],
@@ -125,7 +128,8 @@ def asked(simulator: Simulator | SimulatorFunction | None) -> Callable[..., list
     ) -> list[_Array]:
         inputs["t"] = t
         try:
-            found = function(parameters, inputs, forces)
+            with turn:
+                found = function(parameters, inputs, forces)
         except Exception as error:
             line = f"the simulator failed: {type(error).__name__}: {error}"
             raise _simgap.SimgapError(line) from error
