@@ -21,8 +21,14 @@ from fmpy.fmi2 import FMU2Slave
 import simgap
 
 HERE = Path(__file__).parent / "slide_fmu"
-STEP, SAMPLES = 4e-3, 1200
+STEP, SAMPLES = 4e-3, 600
 FRICTION, LATE = 2.5, 6e-3  # N, s
+
+# A few rivals, to be quick. The whole catalogue takes many times as many simulations.
+SUSPECTED = {
+    "parameter_error", "coulomb_friction", "viscous_damping", "quadratic_damping", "linear_stiffness", "constant_force",
+    "sensor_delay", "sensor_lag", "sensor_gain", "sensor_bias", "input_delay", "input_gain",
+}
 
 
 def compiled(folder):
@@ -112,12 +118,13 @@ def main():
             slide,
             inputs=["u"],
             outputs=["x1", "x2"],
-            parameters={"m1": 3.0, "m2": 5.0, "k0": 900.0, "k": 9000.0, "c0": (12.0, 0.1), "d": (8.0, 0.1)},
+            parameters={"m1": 3.0, "m2": 5.0, "k": 9000.0, "d": (8.0, 0.1)},
             ports={"load": ("x2", "v2")},
             name="slide as an FMU",
         )
         begun = time.perf_counter()
-        d = simgap.diagnose(simulator=simulator, train=runs[:2], check=runs[2])
+        others = [kind for kind in simgap.effects() if kind not in SUSPECTED]
+        d = simgap.diagnose(simulator=simulator, train=runs[:2], check=runs[2], withhold=others)
         print(d)
         print(f"{slide.calls} simulations, {time.perf_counter() - begun:.0f} s")
         slide.fmu.terminate()
