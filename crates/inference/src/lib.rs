@@ -24,6 +24,7 @@ pub mod noise_model;
 mod other;
 mod proposals;
 mod search;
+mod shapley;
 mod stretches;
 
 pub use between_samples::read_inputs;
