@@ -16,9 +16,9 @@ use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, name, rank, remove};
+use crate::gap::RELEVANT_SHARE;
 use crate::motion;
 use crate::noise_model::NOISE_KNOWN;
-use crate::other::RELEVANT_SHARE;
 use crate::search::Search;
 use crate::shapley::shapley_values;
 
