@@ -38,10 +38,10 @@ pub(crate) fn verdict(
     };
     let mut order: Vec<usize> = (0..decision.effects.len()).collect();
     order.sort_by(|&i, &j| {
-        // What the model lacks comes before parameters of it that are off besides; then what closes most.
+        // What the model lacks comes before parameters of it that are off besides; then what explains most.
         let [one, other] = [i, j].map(|k| &decision.effects[k]);
         let by_family = is_nominal(&one.placed).cmp(&is_nominal(&other.placed));
-        by_family.then(other.worth.total_cmp(&one.worth))
+        by_family.then(other.explains.total_cmp(&one.explains))
     });
     let own = 1.0 - decision.other.probability;
     let named: Vec<NamedEffect> = order
@@ -149,10 +149,13 @@ fn sentences(posterior: &EffectPosterior, parameters: &[NamedParameter]) -> Vec<
             slip.name
         ));
     }
-    sentences.push(format!(
-        "without it the log posterior of the set falls by {:.1}",
-        posterior.worth
-    ));
+    sentences.push(match posterior.worth.is_finite() {
+        true => format!(
+            "without it the log posterior of the set falls by {:.1}",
+            posterior.worth
+        ),
+        false => "without it the others take values that machines do not have".into(),
+    });
     sentences.push(format!(
         "it closes {:.0} % of the gap in the channel that profits most",
         100.0 * posterior.closes.min(1.0)

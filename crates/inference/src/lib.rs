@@ -16,6 +16,7 @@
 mod between_samples;
 mod candidate_model;
 mod coincidence;
+mod gap;
 mod marginal_likelihood;
 mod model_posterior;
 mod model_space;
@@ -24,15 +25,17 @@ pub mod noise_model;
 mod other;
 mod proposals;
 mod search;
+mod shapley;
 mod stretches;
 
 pub use between_samples::read_inputs;
 pub use candidate_model::{CandidateModel, add, is_nominal, name, rank};
 pub use coincidence::Coincidence;
+pub use gap::{Gap, RELEVANT_SHARE};
 pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterior};
 pub use model_space::ModelSpace;
 pub use noise_model::NoiseModel;
-pub use other::{FreeLaw, Gap, Other, RELEVANT_SHARE, other};
+pub use other::{FreeLaw, Other, other};
 pub use proposals::RECALIBRATION_STD;
 pub use search::{Budget, Search};
 pub use stretches::{bounds, recalibrate};

@@ -16,10 +16,11 @@ use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, name, rank, remove};
+use crate::gap::RELEVANT_SHARE;
 use crate::motion;
 use crate::noise_model::NOISE_KNOWN;
-use crate::other::RELEVANT_SHARE;
 use crate::search::Search;
+use crate::shapley::shapley_values;
 
 /// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
 /// name, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
@@ -46,10 +47,12 @@ pub struct EffectPosterior {
     pub placed: Placed,
     /// (2), among the sets.
     pub probability: f64,
-    /// ln Z + ln p lost without it.
+    /// ln Z + ln p lost without it; infinite where the others alone are no set.
     pub worth: f64,
     /// Share of the gap that it closes, rms, in the channel that profits most.
     pub closes: f64,
+    /// Share of the motion that it explains, mean square: its Shapley value among the laws of the set.
+    pub explains: f64,
     /// What cannot be told from it, likeliest first.
     pub rivals: Vec<Rival>,
     /// What is the same thing by another name on this plant, whatever the data.
@@ -99,7 +102,8 @@ pub fn model_posterior(
         gap: gap.to_vec(),
         motion: search.problem.output_std(),
     };
-    let sets = relevance.keep_relevant(search, pool)?;
+    let asked = relevance.ask(search, pool)?;
+    let sets = asked.kept();
     let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
     let odds: Vec<f64> = sets
         .iter()
@@ -112,9 +116,17 @@ pub fn model_posterior(
         effects: vec![],
     };
     let effects = posterior.sets.first().map_or(0, |set| set.effects().len());
+    let Some(set) = posterior.best() else {
+        return Ok(posterior);
+    };
+    let explained = explained(search, &relevance, &asked, set)?;
     posterior.effects = (0..effects)
-        .map(|i| effect(search, &relevance, &posterior, i))
-        .collect();
+        .map(|i| {
+            let explains = explained[i];
+            let effect = effect(search, &relevance, &posterior, &asked, i)?;
+            Ok(EffectPosterior { explains, ..effect })
+        })
+        .collect::<Result<_, EstimateError>>()?;
     Ok(posterior)
 }
 
@@ -165,12 +177,12 @@ impl Relevance {
         })
     }
 
-    /// The sets of which every effect is relevant, likeliest first.
-    fn keep_relevant(
+    /// Of each set whether every effect is relevant, as far down as sets count.
+    fn ask(
         &self,
         search: &Search<'_>,
         mut pool: Vec<CandidateModel>,
-    ) -> Result<Vec<CandidateModel>, EstimateError> {
+    ) -> Result<Asked, EstimateError> {
         // Of each set its best fit.
         rank(&mut pool);
         let mut asked = Asked::default();
@@ -187,7 +199,15 @@ impl Relevance {
                 best = best.max(set.log_posterior());
             }
         }
-        Ok(asked.kept())
+        Ok(asked)
+    }
+
+    /// Share of the motion that a set leaves, mean square.
+    fn left(&self, set: &CandidateModel) -> f64 {
+        let channels = set.fit.variance.iter().zip(&self.motion);
+        channels
+            .map(|(left, motion)| left / (motion * motion))
+            .sum()
     }
 
     /// Whether all effects of a set are relevant. Of an irrelevant one, the set without it is asked next.
@@ -260,12 +280,17 @@ impl Asked {
     }
 
     /// All but those that hold an irrelevant effect, likeliest first.
-    fn kept(self) -> Vec<CandidateModel> {
-        let sets = self.sets.into_iter().zip(self.relevant);
-        let kept = sets.filter(|(_, relevant)| *relevant != Some(false));
-        let mut kept: Vec<CandidateModel> = kept.map(|(set, _)| set).collect();
+    fn kept(&self) -> Vec<CandidateModel> {
+        let sets = self.sets.iter().zip(&self.relevant);
+        let kept = sets.filter(|(_, relevant)| **relevant != Some(false));
+        let mut kept: Vec<CandidateModel> = kept.map(|(set, _)| set.clone()).collect();
         rank(&mut kept);
         kept
+    }
+
+    /// The set of a key.
+    fn get(&self, key: &[String]) -> Option<&CandidateModel> {
+        self.places.get(key).map(|&place| &self.sets[place])
     }
 }
 
@@ -300,8 +325,9 @@ fn effect(
     search: &Search<'_>,
     relevance: &Relevance,
     posterior: &ModelPosterior,
+    asked: &Asked,
     index: usize,
-) -> EffectPosterior {
+) -> Result<EffectPosterior, EstimateError> {
     let best = &posterior.sets[0];
     let own = &best.effects()[index];
     let own_name = name(own);
@@ -340,16 +366,64 @@ fn effect(
                 other.kind == placed.effect.kind() && same_place(&other.at, &placed.at)
             })
     };
-    let smaller_key = best.key_without(index);
-    let smaller = posterior.sets.iter().find(|set| set.key() == smaller_key);
-    EffectPosterior {
+    let others: Vec<usize> = (0..best.effects().len()).filter(|i| *i != index).collect();
+    let without = fitted(search, asked, best, &others)?;
+    Ok(EffectPosterior {
         placed: own.clone(),
         probability: posterior.sum(|set| set.effects().iter().any(is_one)),
-        worth: smaller.map_or(f64::INFINITY, |set| {
-            best.log_posterior() - set.log_posterior()
-        }),
-        closes: smaller.map_or(1.0, |set| relevance.closes(best, set)),
+        worth: best.log_posterior() - without.log_posterior(),
+        closes: relevance.closes(best, &without),
+        explains: 0.0,
         rivals,
         equivalents: same,
+    })
+}
+
+/// Some of the effects of a set, fitted without the others.
+fn fitted(
+    search: &Search<'_>,
+    asked: &Asked,
+    set: &CandidateModel,
+    part: &[usize],
+) -> Result<CandidateModel, EstimateError> {
+    let mut key: Vec<String> = part.iter().map(|i| name(&set.effects()[*i])).collect();
+    key.sort();
+    if let Some(known) = asked.get(&key) {
+        return Ok(known.clone());
     }
+    let mut start = set.fit.estimate.clone();
+    for i in (0..set.effects().len()).rev().filter(|i| !part.contains(i)) {
+        start = remove(&start, i, search.nominal);
+    }
+    search.fit(&start)
+}
+
+/// What each effect of a set explains, as a share of the motion, mean square: the Shapley value of a law among the laws of
+/// the set, its wrong nominal parameters as they are; of such a parameter what the others leave without it.
+fn explained(
+    search: &Search<'_>,
+    relevance: &Relevance,
+    asked: &Asked,
+    set: &CandidateModel,
+) -> Result<Vec<f64>, EstimateError> {
+    let all = 0..set.effects().len();
+    let (parameters, laws): (Vec<usize>, Vec<usize>) =
+        all.clone().partition(|i| is_nominal(&set.effects()[*i]));
+    let left = |part: &[usize]| -> Result<f64, EstimateError> {
+        Ok(relevance.left(&fitted(search, asked, set, part)?))
+    };
+    let mut explained = vec![0.0; set.effects().len()];
+    let of_laws = shapley_values(laws.len(), |some| {
+        let mut part = parameters.clone();
+        part.extend(some.iter().map(|k| laws[*k]));
+        left(&part).map(|left| -left)
+    })?;
+    for (law, value) in laws.iter().zip(of_laws) {
+        explained[*law] = value;
+    }
+    for parameter in parameters {
+        let others: Vec<usize> = all.clone().filter(|i| *i != parameter).collect();
+        explained[parameter] = left(&others)? - relevance.left(set);
+    }
+    Ok(explained)
 }

@@ -9,8 +9,9 @@
 //! the best set: each effect removed, exchanged, grown, shrunk; one more added; rescaled; until it stays
 //! ```
 //!
-//! A stage is left out where the best set leaves nothing but noise and no candidate promises to be worth a name: its score pays
-//! for its prior and for the values that it adjusts, it moves an output by enough, and a fit keeps it.
+//! A stage is left out where the best set leaves nothing but noise, or next to nothing of the gap, and no candidate promises to be
+//! worth a name: its score pays for its prior and for the values that it adjusts, it moves an output by enough, and a fit
+//! keeps it.
 
 use std::collections::BTreeSet;
 
@@ -21,6 +22,7 @@ use simgap_estimate::{
 };
 
 use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
+use crate::gap::{Gap, RELEVANT_SHARE};
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
 use crate::noise_model::{NOISE_KNOWN, NoiseModel, noise_variance, rounding_variance, stepped};
@@ -144,8 +146,12 @@ impl<'a> Search<'a> {
         fitted
     }
 
-    /// Whether nothing can be added to the best set, or nothing that could make it likelier.
-    fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
+    /// Whether nothing can be added to the best set, or nothing that could make it likelier. `base` holds no effect.
+    fn is_settled(
+        &self,
+        pool: &[CandidateModel],
+        base: &CandidateModel,
+    ) -> Result<bool, EstimateError> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
@@ -159,7 +165,14 @@ impl<'a> Search<'a> {
         {
             return Ok(true);
         }
-        Ok(self.leaves_noise(best) && !self.is_promising(best)?)
+        let gap = Gap {
+            square: base.fit.variance.clone(),
+            noise: self.noise_of(best),
+            std: self.problem.output_std(),
+        };
+        let leaves_little =
+            gap.left(&best.fit.variance) <= RELEVANT_SHARE && !best.effects().is_empty();
+        Ok((leaves_little || self.leaves_noise(best)) && !self.is_promising(best)?)
     }
 
     /// What no set beyond this one is expected to explain, mean square of each channel: the accuracy of the simulation, noise
@@ -229,7 +242,7 @@ impl<'a> Search<'a> {
     pub fn run(&self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
         let step = self.budget.progress;
         let mut pool = vec![base.clone()];
-        if self.is_settled(&pool)? {
+        if self.is_settled(&pool, base)? {
             return Ok(pool);
         }
         step("nominal parameters");
@@ -239,7 +252,7 @@ impl<'a> Search<'a> {
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
         rank(&mut pool);
-        if !self.is_settled(&pool)? {
+        if !self.is_settled(&pool, base)? {
             step("single effects from many values");
             pool.extend(self.multistart(base, &linear)?);
             pool.extend(self.fit_from_given(base, FITTED[0])?);
@@ -247,7 +260,7 @@ impl<'a> Search<'a> {
         pool.extend(self.fit_dynamics_of_parameters(base, &pool, &linear));
         rank(&mut pool);
         if let Some(recalibrated) = recalibrated
-            && !self.is_settled(&pool)?
+            && !self.is_settled(&pool, base)?
         {
             step("effects beside re-estimated parameters");
             pool.extend(self.beside_recalibrated(&recalibrated)?);
@@ -256,7 +269,7 @@ impl<'a> Search<'a> {
         let mut front: Vec<CandidateModel> = pool.clone();
         front.retain(|set| !set.effects().is_empty() && !self.is_full(set));
         for (size, survivors) in SURVIVORS.iter().enumerate() {
-            if self.is_settled(&pool)? {
+            if self.is_settled(&pool, base)? {
                 return Ok(pool);
             }
             step(["pairs of effects", "sets of three"][size]);
@@ -269,7 +282,7 @@ impl<'a> Search<'a> {
                 next.extend(self.unite(&pool)?);
                 next.extend(self.fit_joint(base, &linear)?);
                 rank(&mut next);
-                if !self.is_settled(&next)? {
+                if !self.is_settled(&next, base)? {
                     step("pairs from many values");
                     next.extend(self.extend_from_many_values(&best)?);
                 }
@@ -280,7 +293,7 @@ impl<'a> Search<'a> {
             front = next;
             front.retain(|set| !self.is_full(set));
         }
-        if !self.is_settled(&pool)? {
+        if !self.is_settled(&pool, base)? {
             step("single effects in stretches");
             // Where stretches cannot be simulated, nothing is found in them.
             let found = self.multiple_shooting(base).unwrap_or_default();

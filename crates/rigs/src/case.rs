@@ -80,7 +80,11 @@ pub fn draw_case(seed: u64, number: usize, filter: &Filter) -> Result<Case, RigE
 fn attempt_case(wanted: &Wanted, number: usize, rng: &mut Rng) -> Option<Case> {
     let family = *rng.pick(&FAMILIES);
     let nominal = draw_plant(family, rng);
-    let (plant, deviations) = crate::deviate::deviated(&nominal, rng);
+    let spread = match wanted.role {
+        Role::Mixed => crate::deviate::WIDE,
+        _ => crate::deviate::SPREAD,
+    };
+    let (plant, deviations) = crate::deviate::deviated(&nominal, spread, rng);
     let setups = setups(&plant, wanted, rng);
     let bench = Bench {
         without: plant.clone(),
@@ -206,6 +210,7 @@ fn truth(draft: &Draft, wanted: &Wanted, name: &str, noise: TruthNoise) -> Truth
     let all: Vec<Effect> = draft.effects.iter().chain(&draft.wrong).cloned().collect();
     let known: Vec<&Effect> = all.iter().filter(catalogued).collect();
     let status = match (wanted.role, known.len() == all.len()) {
+        (Role::Mixed, _) => "effect",
         (_, false) => "unknown",
         (Role::Clean, _) => "none",
         (Role::Parameters, _) => "parameters",

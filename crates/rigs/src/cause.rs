@@ -13,9 +13,11 @@ use crate::plant::{Place, Quantity, Unit};
 use crate::rng::Rng;
 
 /// Gap of a channel that an effect may cause, as a share of its motion.
-const GAP: (f64, f64) = (0.03, 0.6);
+pub(crate) const GAP: (f64, f64) = (0.03, 0.6);
 /// A gap within this factor of the wanted one is near enough.
 const NEAR: f64 = 1.2;
+/// Gaps that are aimed at.
+const USUAL: (f64, f64) = (GAP.0 * NEAR, GAP.1 / NEAR);
 /// Steps of the search for a size.
 const STEPS: usize = 10;
 
@@ -28,11 +30,12 @@ pub(crate) fn with_cause(draft: Draft, wanted: &Wanted, rng: &mut Rng) -> Option
         }
         Role::Parameters => parameters(draft, rng),
         Role::Slip => slip(draft, wanted.kinds[0], rng),
+        Role::Mixed => crate::mixed::mixed(draft, wanted.kinds[0], rng),
         Role::Single | Role::Pair | Role::Foreign => effects(draft, wanted, rng),
     }
 }
 
-fn swings_little(bench: &Bench) -> bool {
+pub(crate) fn swings_little(bench: &Bench) -> bool {
     let arm = !bench.plant.pendulum.is_empty();
     !arm || (0..bench.setups.len()).all(|record| {
         let run = bench.run(&bench.plant, &[], record, 8);
@@ -47,7 +50,7 @@ fn effects(mut draft: Draft, wanted: &Wanted, rng: &mut Rng) -> Option<Draft> {
     let plain = draft.bench.run(&draft.bench.plant, &[], 0, 8)?.1;
     let free = draft.bench.free_responses(0);
     for kind in &wanted.kinds {
-        let effect = sized(&draft.bench, kind, &plain, &free, rng)?;
+        let effect = sized(&draft.bench, kind, (&plain, &free), USUAL, rng)?;
         draft.effects.push(effect);
     }
     judged(draft)
@@ -96,11 +99,12 @@ fn has_clock(kind: &str) -> bool {
     )
 }
 
-fn sized(
+/// An effect at some place that causes a gap within a range; `plain` and `free` are the first record without it.
+pub(crate) fn sized(
     bench: &Bench,
     kind: &'static str,
-    plain: &Run,
-    free: &[Vec<f64>],
+    (plain, free): (&Run, &[Vec<f64>]),
+    (least, most): (f64, f64),
     rng: &mut Rng,
 ) -> Option<Effect> {
     let places = sites(&bench.plant, kind);
@@ -118,7 +122,7 @@ fn sized(
         true => bench.setups.iter().map(|_| 2.0 * PI * rng.unit()).collect(),
         false => vec![],
     };
-    let target = rng.log_uniform(GAP.0 * NEAR, GAP.1 / NEAR);
+    let target = rng.log_uniform(least, most);
     let mut size = target;
     for _ in 0..STEPS {
         let effect = Effect {
@@ -144,25 +148,27 @@ fn sized(
     None
 }
 
+/// A nominal parameter that is wrong by a factor of 1.3 to 3, up or down.
+pub(crate) fn far_off(bench: &Bench, kind: &'static str, rng: &mut Rng) -> Option<Effect> {
+    let places = sites(&bench.plant, kind);
+    if places.is_empty() {
+        return None;
+    }
+    let at = *rng.pick(&places);
+    let up = rng.log_uniform(1.3, 3.0);
+    let factor = if rng.chance(0.5) { up } else { 1.0 / up };
+    Some(error(kind, at, factor))
+}
+
 fn parameters(mut draft: Draft, rng: &mut Rng) -> Option<Draft> {
     let count = if rng.chance(0.25) { 2 } else { 1 };
     for _ in 0..count {
         let kind = *rng.pick(&PARAMETERS);
-        let places = sites(&draft.bench.plant, kind);
-        if places.is_empty() {
+        let wrong = far_off(&draft.bench, kind, rng)?;
+        let is_same = |e: &Effect| e.kind == kind && e.at == wrong.at;
+        if draft.wrong.iter().any(is_same) {
             return None;
         }
-        let at = *rng.pick(&places);
-        let up = rng.log_uniform(1.3, 3.0);
-        let factor = if rng.chance(0.5) { up } else { 1.0 / up };
-        if draft
-            .wrong
-            .iter()
-            .any(|e: &Effect| e.kind == kind && e.at == at)
-        {
-            return None;
-        }
-        let wrong = error(kind, at, factor);
         apply(&mut draft.bench.plant, &wrong);
         draft.wrong.push(wrong);
     }

@@ -5,7 +5,9 @@ use crate::plant::{Place, Plant};
 use crate::rng::Rng;
 
 /// Relative deviation of true from nominal values.
-const SPREAD: f64 = 0.02;
+pub(crate) const SPREAD: f64 = 0.02;
+/// The same of a machine that is known less well than its model file says.
+pub(crate) const WIDE: f64 = 0.05;
 
 /// Multiplies a nominal value by the factor of an error.
 pub(crate) fn apply(plant: &mut Plant, e: &Effect) {
@@ -47,7 +49,7 @@ pub(crate) fn error(kind: &'static str, at: Place, factor: f64) -> Effect {
 }
 
 /// The true plant: every mass, spring and damper a little off in most cases.
-pub(crate) fn deviated(nominal: &Plant, rng: &mut Rng) -> (Plant, Vec<Effect>) {
+pub(crate) fn deviated(nominal: &Plant, spread: f64, rng: &mut Rng) -> (Plant, Vec<Effect>) {
     let mut plant = nominal.clone();
     let mut errors = Vec::new();
     if rng.chance(0.2) {
@@ -55,13 +57,13 @@ pub(crate) fn deviated(nominal: &Plant, rng: &mut Rng) -> (Plant, Vec<Effect>) {
     }
     for kind in ["mass_error", "stiffness_error", "damping_error"] {
         for at in crate::kinds::sites(nominal, kind) {
-            let factor = 1.0 + SPREAD * rng.normal().clamp(-3.0, 3.0);
+            let factor = 1.0 + spread * rng.normal().clamp(-3.0, 3.0);
             errors.push(error(kind, at, factor));
         }
     }
     errors.iter().for_each(|e| apply(&mut plant, e));
     for (_, value) in &mut plant.pendulum {
-        *value *= 1.0 + SPREAD * rng.normal().clamp(-3.0, 3.0);
+        *value *= 1.0 + spread * rng.normal().clamp(-3.0, 3.0);
     }
     (plant, errors)
 }

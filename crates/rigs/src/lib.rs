@@ -24,6 +24,7 @@ pub mod law;
 pub mod linear;
 pub mod machine;
 pub mod march;
+mod mixed;
 pub mod page;
 pub mod plan;
 pub mod plant;

@@ -18,6 +18,7 @@ fn wanted(role: Role) -> (&'static str, Option<&'static str>) {
         Role::Parameters => ("parameters right", Some("or declared")),
         Role::Foreign => ("unknown or incomplete", None),
         Role::Slip => ("slip found", Some("or declared")),
+        Role::Mixed => ("main cause first", Some("named or declared")),
     }
 }
 

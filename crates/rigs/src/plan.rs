@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::kinds::{EFFECTS, FOREIGN};
+use crate::kinds::{EFFECTS, FOREIGN, PARAMETERS};
 use crate::rng::Rng;
 
 /// What a case is about.
@@ -21,16 +21,19 @@ pub enum Role {
     Foreign,
     /// A slip in the set-up: unit, sign, cable.
     Slip,
+    /// One large cause among smaller ones, as in every real machine.
+    Mixed,
 }
 
-/// All roles with their shares in a hundred cases.
-pub const ROLES: [(Role, usize); 6] = [
+/// All roles with their shares in a hundred cases; those without a share are drawn where they are asked for.
+pub const ROLES: [(Role, usize); 7] = [
     (Role::Single, 45),
     (Role::Pair, 12),
     (Role::Clean, 12),
     (Role::Parameters, 17),
     (Role::Foreign, 9),
     (Role::Slip, 5),
+    (Role::Mixed, 0),
 ];
 
 /// Kinds of slips.
@@ -53,6 +56,7 @@ impl Role {
             Role::Parameters => "parameters",
             Role::Foreign => "foreign",
             Role::Slip => "slip",
+            Role::Mixed => "mixed",
         }
     }
 
@@ -138,6 +142,11 @@ pub fn wanted_instead(seed: u64, number: usize, filter: &Filter, instead: usize)
         ],
         Role::Foreign => vec![in_turn(&FOREIGN, "foreign", seed, index + instead)],
         Role::Slip => vec![in_turn(&SLIPS, "slip", seed, index + instead)],
+        Role::Mixed => {
+            let mut all = EFFECTS.to_vec();
+            all.extend(PARAMETERS);
+            vec![in_turn(&all, "mixed", seed, index + instead)]
+        }
         Role::Clean | Role::Parameters => vec![],
     };
     Wanted { role, kinds }

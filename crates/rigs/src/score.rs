@@ -145,7 +145,7 @@ fn judged(truth: &Truth, diagnosis: &Diagnosis) -> (bool, bool) {
                 right || (blames && matched(said, &truth.effects, declares)),
             )
         }
-        Role::Single | Role::Slip | Role::Foreign => {
+        Role::Single | Role::Slip | Role::Foreign | Role::Mixed => {
             let Some(only) = truth.effects.first() else {
                 return (open, open);
             };

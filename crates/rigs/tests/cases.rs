@@ -30,6 +30,32 @@ fn verify_a_case_has_a_model_training_records_and_a_check_record() {
     assert!(case.files.iter().all(|f| !f.1.contains("error")));
 }
 
+#[test]
+fn verify_a_mixed_case_has_a_main_cause_and_smaller_ones() {
+    for number in 1..=3 {
+        let case = draw_case(5, number, &filter(Role::Mixed)).unwrap();
+        let truth = &case.truth;
+        assert_eq!(truth.status, "effect");
+        assert!((3..=4).contains(&(truth.effects.len() + truth.foreign.len())));
+        // The first is the main one: the others leave little of the gap of all.
+        let check = case.bench.setups.len() - 1;
+        let free = case.bench.free_responses(check);
+        let largest = |effects: &[simgap_rigs::effect::Effect], whole: bool| {
+            let mut bench = case.bench.clone();
+            if !whole {
+                bench.plant = bench.without.clone();
+            }
+            let gaps = bench.gap(effects, check, &free).unwrap();
+            gaps.into_iter().fold(0.0, f64::max)
+        };
+        assert_eq!(truth.effects[0].kind, case.effects[0].kind);
+        let main = largest(&case.effects[..1], true);
+        for small in &case.effects[1..] {
+            assert!(largest(std::slice::from_ref(small), false) <= 0.4 * main);
+        }
+    }
+}
+
 fn answered(text: &str) -> Answer {
     Answer {
         diagnosis: Some(serde_json::from_str(text).unwrap()),

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use simgap_effects::{Action, Placed, SignalMap};
-use simgap_integrate::exact::{Element, ForceLaw, MemberMotion};
+use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, elementary};
 use simgap_model::{Location, Model, Node, same_pair};
 
 use crate::orifice::orifices;
@@ -53,7 +53,7 @@ impl ForceLaw for Gravity {
     simgap_integrate::lanes!(value);
 
     fn force(&self, motion: MemberMotion) -> f64 {
-        self.value * (motion.displacement.sin() - motion.displacement)
+        self.value * (elementary::sin(motion.displacement) - motion.displacement)
     }
 }
 

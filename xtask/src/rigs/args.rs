@@ -14,7 +14,7 @@ pub struct Args {
     /// Folder for cases, answers, truths and the score
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
-    /// Only cases of this role: single, pair, clean, parameters, foreign or slip
+    /// Only cases of this role: single, pair, clean, parameters, foreign, slip or mixed
     #[arg(long)]
     pub(super) role: Option<String>,
     /// Only cases with this kind

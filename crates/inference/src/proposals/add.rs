@@ -69,19 +69,18 @@ impl Search<'_> {
         };
         let mut asked: BTreeSet<String> = BTreeSet::new();
         for score in self.scores(set, &linear).into_iter().filter(pays) {
-            if is_nominal(&score.start) {
-                return Ok(true);
-            }
             if asked.contains(&name(&score.start)) {
                 continue;
             }
+            // A wrong nominal parameter is told however little it moves.
+            let may_be_small = is_nominal(&score.start);
             let start = add_scored(&set.fit.estimate, score);
             // From a start where the plant runs away nothing is promised.
             let Ok(with) = linear.fit(&start, &held) else {
                 continue;
             };
             let moved = motion::between(&with, &set.fit);
-            if motion::is_enough(&moved, &std).all(|enough| !enough) {
+            if !may_be_small && motion::is_enough(&moved, &std).all(|enough| !enough) {
                 continue;
             }
             asked.extend(start.effects.last().map(name));
