@@ -4,7 +4,7 @@
 mod common;
 
 use common::{MODEL, model};
-use simgap_effects::{EffectError, Placed, SiteKind, catalogue, sites};
+use simgap_effects::{EffectError, Placed, SiteKind, catalogue, places_of, sites};
 use simgap_model::{EffectEntry, Location, Model};
 
 fn names(kind: SiteKind) -> Vec<String> {
@@ -292,7 +292,7 @@ fn verify_a_place_that_is_not_in_the_model_is_refused() {
 fn verify_ports_and_parameters_of_a_simulator_are_places() {
     let model = common::simulator();
     let of = |kind: &str| -> Vec<String> {
-        let places = places_of(&model, find(kind).unwrap()).into_iter();
+        let places = places_of(&model, common::effect(kind)).into_iter();
         places.map(|at| at.to_string()).collect()
     };
     for kind in [

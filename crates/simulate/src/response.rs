@@ -64,14 +64,15 @@ impl Response {
             .iter()
             .map(|(name, _)| (name.clone(), vec![0.0; run.len]))
             .collect();
-        let at_rest = ask(&PlantRun {
+        let still = PlantRun {
             forces: &still,
             ..*run
-        })?;
+        };
+        let at_rest = ask(&still)?;
         let mut unit = Vec::with_capacity(ports.len());
         for (q, &[_, velocity]) in ports.iter().enumerate() {
             let wanted = PULSE_SHARE * range(&at_rest[velocity]);
-            unit.push(pulse(ask, run, (q, velocity), (&still, &at_rest), wanted)?);
+            unit.push(pulse(ask, &still, (q, velocity), &at_rest, wanted)?);
         }
         let sets_in = |(q, &[_, velocity]): (usize, &[usize; 2])| {
             let own: &Vec<f64> = &unit[q][velocity];
@@ -88,7 +89,7 @@ impl Response {
             let own = unit[q][velocity].get(lag).copied().unwrap_or(0.0);
             // A pulse moves its own port forwards.
             if own <= 0.0 {
-                let port = still[q].0.clone();
+                let port = still.forces[q].0.clone();
                 return Err(PlantError::StillPort { port });
             }
         }
@@ -247,23 +248,24 @@ impl Whole {
     }
 }
 
-/// (1) of one port for every output, with a pulse that moves its velocity by about as much as is wanted.
+/// (1) of one port for every output, with a pulse that moves its velocity by about as much as is wanted. `still` has no
+/// force at any port, and `at_rest` is what it gives.
 fn pulse(
     ask: Ask<'_>,
-    run: &PlantRun<'_>,
+    still: &PlantRun<'_>,
     (q, velocity): (usize, usize),
-    (still, at_rest): (&[(String, Vec<f64>)], &[Vec<f64>]),
+    at_rest: &[Vec<f64>],
     wanted: f64,
 ) -> Result<Vec<Vec<f64>>, PlantError> {
     let mut size = 1.0;
     for _ in 0..MOST_PULSES {
-        let mut forces = still.to_vec();
+        let mut forces = still.forces.to_vec();
         if let Some(first) = forces[q].1.first_mut() {
             *first = size;
         }
         let pushed = match ask(&PlantRun {
             forces: &forces,
-            ..*run
+            ..*still
         }) {
             Ok(pushed) => pushed,
             // More than the simulator can bear.
@@ -290,7 +292,7 @@ fn pulse(
         }
     }
     Err(PlantError::StillPort {
-        port: still[q].0.clone(),
+        port: still.forces[q].0.clone(),
     })
 }
 
