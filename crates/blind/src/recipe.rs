@@ -139,7 +139,7 @@ impl Lists {
     fn new(random: &mut Random) -> Lists {
         let names = |keep: &dyn Fn(Family) -> bool| -> Vec<String> {
             // No plant that is drawn here has a hydraulic drive.
-            let drawn = catalogue().iter().filter(|e| !e.site().is_hydraulic());
+            let drawn = catalogue().iter().filter(|e| e.site().is_mechanical());
             let kept = drawn.filter(|effect| keep(effect.family()));
             kept.map(|effect| effect.kind().to_string()).collect()
         };
@@ -168,7 +168,7 @@ mod tests {
     fn verify_three_hundred_cases_hold_every_kind_several_times() -> Result<(), BlindError> {
         let recipes = schedule(3, 300, &[])?;
         let count = |wanted: &dyn Fn(&Recipe) -> bool| recipes.iter().filter(|r| wanted(r)).count();
-        for effect in catalogue().iter().filter(|e| !e.site().is_hydraulic()) {
+        for effect in catalogue().iter().filter(|e| e.site().is_mechanical()) {
             let recipe = Recipe::Kind(effect.kind().to_string());
             assert!(count(&|r| *r == recipe) >= 4, "{recipe}");
         }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use simgap_blind::{Level, Recipe, Status, foreign_effects, generate, schedule};
-use simgap_effects::catalogue;
+use simgap_effects::{Effect, SiteKind, catalogue};
 
 const SEED: u64 = 5;
 
@@ -66,9 +66,16 @@ fn check_case(number: usize, recipe: &Recipe, level: Level) {
     assert_eq!((truth.status, truth.effects.len()), expected);
 }
 
+/// Kinds that a machine may have: no machine is drawn that is a simulator of someone else's.
+fn drawn() -> impl Iterator<Item = &'static &'static dyn Effect> {
+    catalogue()
+        .iter()
+        .filter(|effect| effect.site() != SiteKind::Parameter)
+}
+
 #[test]
 fn verify_every_kind_of_the_catalogue_can_be_drawn() {
-    for (number, effect) in catalogue().iter().enumerate() {
+    for (number, effect) in drawn().enumerate() {
         let recipe = Recipe::Kind(effect.kind().to_string());
         check_case(number, &recipe, Level::Standard);
     }
@@ -77,7 +84,7 @@ fn verify_every_kind_of_the_catalogue_can_be_drawn() {
 /// One in four: the others differ in nothing that the level touches.
 #[test]
 fn verify_kinds_can_be_drawn_with_small_gaps_and_much_noise() {
-    for (number, effect) in catalogue().iter().enumerate().step_by(4) {
+    for (number, effect) in drawn().enumerate().step_by(4) {
         // On the few plants with a pendulum other parameters that are 5 % off hide a small error of its torque.
         if effect.kind() == "pendulum_error" {
             continue;

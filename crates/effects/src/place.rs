@@ -206,6 +206,12 @@ impl SiteKind {
         matches!(self, SiteKind::Chambers | SiteKind::Spool)
     }
 
+    /// Whether it is found on machines of masses and members; not a place of a simulator.
+    #[must_use]
+    pub fn is_mechanical(self) -> bool {
+        !self.is_hydraulic() && self != SiteKind::Parameter
+    }
+
     /// The same in words.
     #[must_use]
     pub fn words(self) -> &'static str {

@@ -327,7 +327,9 @@ fn verify_families_act_where_they_belong() {
             Action::Input(_) => place.starts_with("input"),
             Action::Output(_) | Action::Sampling(_) => place.starts_with("channel"),
             Action::Force(_) | Action::Model(_) | Action::Mode { .. } | Action::Member(_) => {
-                place.starts_with("between") || place.starts_with("mass")
+                ["between", "mass", "parameter"]
+                    .iter()
+                    .any(|word| place.starts_with(word))
             }
         };
         assert!(fits, "{} is placed by {place}", effect.kind());
@@ -420,8 +422,11 @@ fn verify_what_dynamics_turn_into_lets_them_grow_at_the_same_place() {
 
 #[test]
 fn verify_every_kind_has_sites_and_survives_a_model_file() {
-    let model = hydraulic();
     for &effect in catalogue() {
+        let model = match effect.site() {
+            SiteKind::Parameter => simulator(),
+            _ => hydraulic(),
+        };
         let places = sites(&model, effect.site());
         assert!(!places.is_empty(), "{} has no site", effect.kind());
         for at in places {

@@ -163,8 +163,11 @@ fn verify_an_unknown_kind_is_answered_with_the_catalogue() {
 
 #[test]
 fn verify_values_that_are_no_numbers_are_refused() {
-    let model = common::hydraulic();
     for &effect in catalogue() {
+        let model = match effect.site() {
+            SiteKind::Parameter => common::simulator(),
+            _ => common::hydraulic(),
+        };
         let at = sites(&model, effect.site()).swap_remove(0);
         let good = effect.starts(&common::scale()).swap_remove(0);
         for index in 0..good.len() {

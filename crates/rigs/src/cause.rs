@@ -1,25 +1,18 @@
 //! The cause of a case: drawn, placed and sized.
 
-use std::f64::consts::PI;
-
-use crate::bench::Bench;
-use crate::deviate::{apply, error};
+use crate::deviate::apply;
 use crate::draft::Draft;
 use crate::effect::Effect;
-use crate::kinds::{PARAMETERS, group, sites, template};
-use crate::march::Run;
+use crate::kinds::{PARAMETERS, group};
 use crate::plan::{Role, Wanted};
 use crate::plant::{Place, Quantity, Unit};
 use crate::rng::Rng;
+use crate::sizing::{NEAR, far_off, sized, swings_little};
 
 /// Gap of a channel that an effect may cause, as a share of its motion.
-pub(crate) const GAP: (f64, f64) = (0.03, 0.6);
-/// A gap within this factor of the wanted one is near enough.
-const NEAR: f64 = 1.2;
+const GAP: (f64, f64) = (0.03, 0.6);
 /// Gaps that are aimed at.
 const USUAL: (f64, f64) = (GAP.0 * NEAR, GAP.1 / NEAR);
-/// Steps of the search for a size.
-const STEPS: usize = 10;
 
 /// Adds the cause; `None` where this machine does not show it.
 pub(crate) fn with_cause(draft: Draft, wanted: &Wanted, rng: &mut Rng) -> Option<Draft> {
@@ -33,14 +26,6 @@ pub(crate) fn with_cause(draft: Draft, wanted: &Wanted, rng: &mut Rng) -> Option
         Role::Mixed => crate::mixed::mixed(draft, wanted.kinds[0], rng),
         Role::Single | Role::Pair | Role::Foreign => effects(draft, wanted, rng),
     }
-}
-
-pub(crate) fn swings_little(bench: &Bench) -> bool {
-    let arm = !bench.plant.pendulum.is_empty();
-    !arm || (0..bench.setups.len()).all(|record| {
-        let run = bench.run(&bench.plant, &[], record, 8);
-        run.is_some_and(|(_, run)| run.states[0].iter().all(|a| a.abs() < 2.5))
-    })
 }
 
 fn effects(mut draft: Draft, wanted: &Wanted, rng: &mut Rng) -> Option<Draft> {
@@ -90,74 +75,6 @@ fn judged(mut draft: Draft) -> Option<Draft> {
     };
     draft.gap = draft.gap.min(least);
     (draft.gap >= GAP.0 && draft.gap <= upper).then_some(draft)
-}
-
-fn has_clock(kind: &str) -> bool {
-    matches!(
-        kind,
-        "harmonic_force" | "tone_pickup" | "time_varying_stiffness"
-    )
-}
-
-/// An effect at some place that causes a gap within a range; `plain` and `free` are the first record without it.
-pub(crate) fn sized(
-    bench: &Bench,
-    kind: &'static str,
-    (plain, free): (&Run, &[Vec<f64>]),
-    (least, most): (f64, f64),
-    rng: &mut Rng,
-) -> Option<Effect> {
-    let places = sites(&bench.plant, kind);
-    if places.is_empty() {
-        return None;
-    }
-    let at = *rng.pick(&places);
-    let scale = crate::scale::scale(bench, plain, 0, at, kind);
-    let positive = [scale.rms, scale.rate, scale.force];
-    if positive.iter().any(|v| !(v.is_finite() && *v > 1e-15)) {
-        return None;
-    }
-    let shape = template(kind, &scale, rng);
-    let phases = match has_clock(kind) {
-        true => bench.setups.iter().map(|_| 2.0 * PI * rng.unit()).collect(),
-        false => vec![],
-    };
-    let target = rng.log_uniform(least, most);
-    let mut size = target;
-    for _ in 0..STEPS {
-        let effect = Effect {
-            kind,
-            at,
-            values: shape(size),
-            phases: phases.clone(),
-        };
-        let Some(gaps) = bench.gap(std::slice::from_ref(&effect), 0, free) else {
-            size *= 0.3;
-            continue;
-        };
-        let gap = gaps.iter().copied().fold(0.0, f64::max);
-        let off = target / gap.max(1e-9);
-        if (1.0 / NEAR..NEAR).contains(&off) {
-            return Some(effect);
-        }
-        size *= off.powf(0.9).clamp(0.1, 8.0);
-        if !(1e-6..1e4).contains(&size) {
-            return None;
-        }
-    }
-    None
-}
-
-/// A nominal parameter that is wrong by a factor of 1.3 to 3, up or down.
-pub(crate) fn far_off(bench: &Bench, kind: &'static str, rng: &mut Rng) -> Option<Effect> {
-    let places = sites(&bench.plant, kind);
-    if places.is_empty() {
-        return None;
-    }
-    let at = *rng.pick(&places);
-    let up = rng.log_uniform(1.3, 3.0);
-    let factor = if rng.chance(0.5) { up } else { 1.0 / up };
-    Some(error(kind, at, factor))
 }
 
 fn parameters(mut draft: Draft, rng: &mut Rng) -> Option<Draft> {

@@ -33,6 +33,7 @@ pub mod rng;
 mod scale;
 pub mod score;
 mod size;
+mod sizing;
 pub mod truth;
 
 pub use answer::Diagnosis;

@@ -1,11 +1,11 @@
 //! A machine as machines are: one cause that matters, and others beside it that do not go away.
 
-use crate::cause::{far_off, sized, swings_little};
 use crate::deviate::apply;
 use crate::draft::Draft;
 use crate::effect::Effect;
 use crate::kinds::{EFFECTS, FOREIGN, PARAMETERS, group};
 use crate::rng::Rng;
+use crate::sizing::{far_off, sized, swings_little};
 
 /// Gap of a channel that the main cause makes.
 const MAIN: (f64, f64) = (0.1, 0.5);

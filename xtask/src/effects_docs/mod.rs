@@ -71,6 +71,12 @@ pub fn differences() -> Result<Vec<String>, EffectsDocsError> {
     Ok(changes.into_iter().map(line).collect())
 }
 
+/// Kinds that have a picture: what is wrong with a parameter of a simulator looks as the simulator does.
+fn drawn() -> impl Iterator<Item = &'static dyn Effect> {
+    let all = catalogue().iter().copied();
+    all.filter(|effect| effect.site() != SiteKind::Parameter)
+}
+
 /// Everything that is generated, by its path from the root of the workspace.
 ///
 /// # Errors
@@ -78,9 +84,7 @@ pub fn differences() -> Result<Vec<String>, EffectsDocsError> {
 pub fn files() -> Result<BTreeMap<String, String>, EffectsDocsError> {
     let mut files = BTreeMap::new();
     let mut pictures = BTreeMap::new();
-    // What is wrong with a parameter of a simulator looks as the simulator does.
-    let drawn = |effect: &&&dyn Effect| effect.site() != SiteKind::Parameter;
-    for &effect in catalogue().iter().filter(drawn) {
+    for effect in drawn() {
         let picture = picture(effect)?;
         files.insert(
             format!("{PICTURES}/{}.svg", effect.kind()),
@@ -233,7 +237,7 @@ mod tests {
 
     #[test]
     fn verify_every_entry_has_a_small_picture_that_changes() {
-        for &effect in catalogue() {
+        for effect in drawn() {
             let picture = picture(effect).unwrap_or_else(|e| panic!("{}: {e}", effect.kind()));
             let svg = &picture.svg;
             assert!(
