@@ -143,30 +143,41 @@ impl Course {
     }
 }
 
-/// Where a rising function of slope about one is zero: by secants, between bounds once there are some.
+/// Where a rising function is zero: between bounds, which a slope of one or more gives at once, by false position with
+/// halved ends (Illinois) and by halves where that is slow.
 fn root(value: impl Fn(f64) -> f64, guess: f64) -> f64 {
     let (mut a, mut at_a) = (guess, value(guess));
     let mut b = a - at_a;
+    let mut at_b = value(b);
+    let mut reach = at_a;
     for _ in 0..MOST_STEPS {
-        let at_b = value(b);
+        if at_a * at_b <= 0.0 || !at_b.is_finite() {
+            break;
+        }
+        (a, at_a) = (b, at_b);
+        reach *= 2.0;
+        b -= reach;
+        at_b = value(b);
+    }
+    let mut width = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
         let is_accurate = at_b.abs() <= ACCURATE * b.abs();
         if is_accurate || (b - a).abs() <= ACCURATE * (a.abs() + b.abs()) || !at_b.is_finite() {
             return b;
         }
-        let slope = (at_b - at_a) / (b - a);
-        let secant = b - at_b / slope;
-        let is_between = at_a * at_b < 0.0;
-        let next = match (is_between, slope > 0.0) {
-            // The secant of a bent function may hang on one end.
-            (true, _) if (secant - b).abs() < 0.9 * (a - b).abs() => secant,
-            (true, _) => 0.5 * (a + b),
-            (false, true) => secant,
-            (false, false) => b - at_b,
+        let is_slow = (b - a).abs() > 0.5 * width;
+        width = (b - a).abs();
+        let next = match is_slow {
+            true => 0.5 * (a + b),
+            false => b - at_b * (b - a) / (at_b - at_a),
         };
-        if !is_between || value(next) * at_b < 0.0 {
+        let at_next = value(next);
+        if at_next * at_b < 0.0 {
             (a, at_a) = (b, at_b);
+        } else {
+            at_a *= 0.5;
         }
-        b = next;
+        (b, at_b) = (next, at_next);
     }
     b
 }
