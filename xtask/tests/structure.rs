@@ -105,7 +105,7 @@ fn verify_the_commands_of_the_readme_are_run() {
     let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
     let (readme, run) = (read("README.md"), read(".ci/run"));
     for command in [
-        "cargo run -p simgap-cli -- demo",
+        "cargo run --bin simgap -- demo",
         "cargo test --workspace",
         "cargo xtask reproduce-paper --check",
     ] {
