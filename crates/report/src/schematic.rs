@@ -8,6 +8,7 @@
 
 mod drives;
 mod parts;
+mod simulator;
 
 use parts::{BOX, COLUMN, FIRST, ROW, boxed, driven, label, lines_below, measured_at};
 use simgap_model::{GROUND, Location, Model, same_pair};
@@ -75,9 +76,13 @@ pub fn schematic_svg(model: &Model) -> String {
     for node in nodes.iter().filter(|node| node.name != GROUND) {
         body.push_str(&node_box(model, node));
     }
-    let (width, height) = match drives {
-        None => (right, below),
-        Some((signals, [to_right, to_bottom])) => {
+    let (width, height) = match (simulator::drawn(model), drives) {
+        (Some((signals, size)), _) => {
+            body = signals;
+            (size[0], size[1])
+        }
+        (None, None) => (right, below),
+        (None, Some((signals, [to_right, to_bottom]))) => {
             body.push_str(&signals);
             (right.max(to_right), to_bottom)
         }
@@ -329,6 +334,18 @@ fn node_box(model: &Model, node: &Node) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn verify_a_simulator_is_a_box_with_its_signals_and_ports() {
+        let text = "schema = \"simgap-model/1\"\nname = \"arm\"\n\
+            [[input]]\nchannel = \"torque\"\nkind = \"signal\"\nat = \"torque\"\n\
+            [[port]]\nname = \"joint\"\ndisplacement = \"q\"\nvelocity = \"qd\"\n\
+            [[output]]\nchannel = \"q\"\nkind = \"signal\"\n";
+        let svg = schematic_svg(&Model::from_toml(text).unwrap());
+        for shown in [">arm<", ">torque<", ">q<", ">force at joint<"] {
+            assert!(svg.contains(shown), "{shown}: {svg}");
+        }
+    }
 
     fn model(name: &str) -> Model {
         let text = format!(
