@@ -1,5 +1,6 @@
 //! A fitted set of effects, and how sets are changed.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use simgap_effects::{Family, Placed};
@@ -92,12 +93,15 @@ pub(crate) fn is_of(placed: &Placed, candidate: &Candidate) -> bool {
     placed.effect.kind() == candidate.effect.kind() && placed.at == candidate.at
 }
 
+/// The likelier first.
+pub(crate) fn by_rank(a: &CandidateModel, b: &CandidateModel) -> Ordering {
+    let by_posterior = b.log_posterior().total_cmp(&a.log_posterior());
+    by_posterior.then_with(|| a.key().cmp(&b.key()))
+}
+
 /// Sorts, best first, and keeps the best fit of each set.
 pub fn rank(sets: &mut Vec<CandidateModel>) {
-    sets.sort_by(|a, b| {
-        let by_posterior = b.log_posterior().total_cmp(&a.log_posterior());
-        by_posterior.then_with(|| a.key().cmp(&b.key()))
-    });
+    sets.sort_by(by_rank);
     let mut seen = BTreeSet::new();
     sets.retain(|set| seen.insert(set.key()));
 }

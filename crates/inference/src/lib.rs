@@ -13,6 +13,7 @@
 //! No stage calls an earlier one. The search may miss a set; it does not judge one. Nothing here knows an effect by name
 //! or what is reported of it.
 
+mod asked;
 mod between_samples;
 mod candidate_model;
 mod coincidence;

@@ -9,12 +9,10 @@
 //! relevance*): what closes less belongs to the smaller set. Effects that can be exchanged within the stated odds cannot
 //! be told apart.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
-
 use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
+use crate::asked::Asked;
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, name, rank, remove};
 use crate::gap::RELEVANT_SHARE;
 use crate::motion;
@@ -103,6 +101,13 @@ pub fn model_posterior(
         motion: search.problem.output_std(),
     };
     let asked = relevance.ask(search, pool)?;
+    let shares = match asked.best() {
+        Some(best) => (0..best.effects().len())
+            .zip(explained(search, &relevance, &asked, best)?)
+            .map(|(i, explains)| share(search, &relevance, &asked, best, (i, explains)))
+            .collect::<Result<Vec<_>, EstimateError>>()?,
+        None => vec![],
+    };
     let sets = asked.kept();
     let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
     let odds: Vec<f64> = sets
@@ -115,18 +120,11 @@ pub fn model_posterior(
         sets,
         effects: vec![],
     };
-    let effects = posterior.sets.first().map_or(0, |set| set.effects().len());
-    let Some(set) = posterior.best() else {
-        return Ok(posterior);
-    };
-    let explained = explained(search, &relevance, &asked, set)?;
-    posterior.effects = (0..effects)
-        .map(|i| {
-            let explains = explained[i];
-            let effect = effect(search, &relevance, &posterior, &asked, i)?;
-            Ok(EffectPosterior { explains, ..effect })
-        })
-        .collect::<Result<_, EstimateError>>()?;
+    posterior.effects = shares
+        .into_iter()
+        .enumerate()
+        .map(|(i, share)| effect(search, &posterior, i, share))
+        .collect();
     Ok(posterior)
 }
 
@@ -249,51 +247,6 @@ impl Relevance {
     }
 }
 
-/// Sets, and of each whether all its effects are relevant, once it was asked.
-#[derive(Default)]
-struct Asked {
-    sets: Vec<CandidateModel>,
-    relevant: Vec<Option<bool>>,
-    /// Where each set is, by its key.
-    places: BTreeMap<Vec<String>, usize>,
-}
-
-impl Asked {
-    /// Adds the sets that are not among them.
-    fn extend(&mut self, sets: Vec<CandidateModel>) {
-        for set in sets {
-            if let Entry::Vacant(place) = self.places.entry(set.key()) {
-                place.insert(self.sets.len());
-                self.sets.push(set);
-                self.relevant.push(None);
-            }
-        }
-    }
-
-    /// The likeliest of the sets that were not asked.
-    fn next(&self) -> Option<usize> {
-        let open = (0..self.sets.len()).filter(|&i| self.relevant[i].is_none());
-        let posterior = |i: &usize| self.sets[*i].log_posterior();
-        // Of equals the first.
-        open.rev()
-            .max_by(|a, b| posterior(a).total_cmp(&posterior(b)))
-    }
-
-    /// All but those that hold an irrelevant effect, likeliest first.
-    fn kept(&self) -> Vec<CandidateModel> {
-        let sets = self.sets.iter().zip(&self.relevant);
-        let kept = sets.filter(|(_, relevant)| **relevant != Some(false));
-        let mut kept: Vec<CandidateModel> = kept.map(|(set, _)| set.clone()).collect();
-        rank(&mut kept);
-        kept
-    }
-
-    /// The set of a key.
-    fn get(&self, key: &[String]) -> Option<&CandidateModel> {
-        self.places.get(key).map(|&place| &self.sets[place])
-    }
-}
-
 /// What one effect of a set moves each output by, with everything else as it is, rms.
 fn moved(
     search: &Search<'_>,
@@ -321,13 +274,37 @@ fn closed<'a>(
     variances.map(|(poorer, better)| (poorer - better).max(0.0))
 }
 
-fn effect(
+/// What one effect of the best set is to it.
+struct Share {
+    /// [`EffectPosterior::worth`].
+    worth: f64,
+    /// [`EffectPosterior::closes`].
+    closes: f64,
+    /// [`EffectPosterior::explains`].
+    explains: f64,
+}
+
+fn share(
     search: &Search<'_>,
     relevance: &Relevance,
-    posterior: &ModelPosterior,
     asked: &Asked,
+    best: &CandidateModel,
+    (index, explains): (usize, f64),
+) -> Result<Share, EstimateError> {
+    let without = asked.part(search, best, &all_but(best, index))?;
+    Ok(Share {
+        worth: best.log_posterior() - without.log_posterior(),
+        closes: relevance.closes(best, &without),
+        explains,
+    })
+}
+
+fn effect(
+    search: &Search<'_>,
+    posterior: &ModelPosterior,
     index: usize,
-) -> Result<EffectPosterior, EstimateError> {
+    share: Share,
+) -> EffectPosterior {
     let best = &posterior.sets[0];
     let own = &best.effects()[index];
     let own_name = name(own);
@@ -366,36 +343,20 @@ fn effect(
                 other.kind == placed.effect.kind() && same_place(&other.at, &placed.at)
             })
     };
-    let others: Vec<usize> = (0..best.effects().len()).filter(|i| *i != index).collect();
-    let without = fitted(search, asked, best, &others)?;
-    Ok(EffectPosterior {
+    EffectPosterior {
         placed: own.clone(),
         probability: posterior.sum(|set| set.effects().iter().any(is_one)),
-        worth: best.log_posterior() - without.log_posterior(),
-        closes: relevance.closes(best, &without),
-        explains: 0.0,
+        worth: share.worth,
+        closes: share.closes,
+        explains: share.explains,
         rivals,
         equivalents: same,
-    })
+    }
 }
 
-/// Some of the effects of a set, fitted without the others.
-fn fitted(
-    search: &Search<'_>,
-    asked: &Asked,
-    set: &CandidateModel,
-    part: &[usize],
-) -> Result<CandidateModel, EstimateError> {
-    let mut key: Vec<String> = part.iter().map(|i| name(&set.effects()[*i])).collect();
-    key.sort();
-    if let Some(known) = asked.get(&key) {
-        return Ok(known.clone());
-    }
-    let mut start = set.fit.estimate.clone();
-    for i in (0..set.effects().len()).rev().filter(|i| !part.contains(i)) {
-        start = remove(&start, i, search.nominal);
-    }
-    search.fit(&start)
+/// The places of all effects of a set but one.
+fn all_but(set: &CandidateModel, index: usize) -> Vec<usize> {
+    (0..set.effects().len()).filter(|i| *i != index).collect()
 }
 
 /// What each effect of a set explains, as a share of the motion, mean square: the Shapley value of a law among the laws of
@@ -406,11 +367,10 @@ fn explained(
     asked: &Asked,
     set: &CandidateModel,
 ) -> Result<Vec<f64>, EstimateError> {
-    let all = 0..set.effects().len();
     let (parameters, laws): (Vec<usize>, Vec<usize>) =
-        all.clone().partition(|i| is_nominal(&set.effects()[*i]));
+        (0..set.effects().len()).partition(|i| is_nominal(&set.effects()[*i]));
     let left = |part: &[usize]| -> Result<f64, EstimateError> {
-        Ok(relevance.left(&fitted(search, asked, set, part)?))
+        Ok(relevance.left(asked.part(search, set, part)?.as_ref()))
     };
     let mut explained = vec![0.0; set.effects().len()];
     let of_laws = shapley_values(laws.len(), |some| {
@@ -422,8 +382,7 @@ fn explained(
         explained[*law] = value;
     }
     for parameter in parameters {
-        let others: Vec<usize> = all.clone().filter(|i| *i != parameter).collect();
-        explained[parameter] = left(&others)? - relevance.left(set);
+        explained[parameter] = left(&all_but(set, parameter))? - relevance.left(set);
     }
     Ok(explained)
 }
