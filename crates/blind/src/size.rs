@@ -49,8 +49,7 @@ pub(crate) fn site_scale(
     let signal = match at {
         Location::Channel(name) => model.output_index(name).map_or(0.0, |i| std(&outputs[i])),
         Location::Input(_) => input.map_or(0.0, |i| std(&run.inputs[i])),
-        Location::Parameter(_) => 0.0,
-        Location::Between(_) | Location::Mass(_) => 0.0,
+        Location::Between(_) | Location::Mass(_) | Location::Parameter(_) => 0.0,
     };
     let positive = |value: f64| if value > 0.0 { value } else { 1.0 };
     let channel = match at {

@@ -19,7 +19,7 @@ use faer::Mat;
 use simgap_diagnose::{CheckSeries, Diagnosis, PlaceMotion};
 use simgap_integrate::exact::matrix_exponential;
 use simgap_model::{
-    Form, Location, Model, Node, Output, OutputKind, StructuralMatrices, same_pair, state_matrix,
+    Form, Location, Model, Node, Output, StructuralMatrices, same_pair, state_matrix,
 };
 
 use simgap_signal::noise::noise_std_by_differences;
@@ -218,8 +218,7 @@ fn ends(model: &Model, at: &Location) -> Option<[Node; 2]> {
 /// (1) and (2) over one step of the record, and what the outputs see of it.
 fn system(model: &Model, at: &Location, step_s: f64) -> Option<System> {
     let n = model.dof_count();
-    let is_outside = |output: &Output| output.kind == OutputKind::Signal;
-    if model.outputs.iter().any(is_outside) {
+    if model.is_external() {
         return None;
     }
     let states = 2 * n + 1;

@@ -5,7 +5,7 @@
 
 use simgap_model::{Block, Model, Valve};
 
-use super::parts::{BOX, COLUMN, FIRST, ROW, boxed, driven, lines_below, measured_at};
+use super::parts::{BOX, COLUMN, FIRST, ROW, arrow, boxed, driven, lines_below, measured_at};
 
 /// Size of a block or a valve, pixels: their names are longer than those of masses.
 const PART: [f64; 2] = [120.0, BOX[1]];
@@ -36,7 +36,7 @@ pub(super) fn drawn(model: &Model, top: f64) -> Option<(String, [f64; 2])> {
     for (from, to) in arrows(model) {
         let find = |name: &str| parts.iter().find(|part| part.name == name);
         if let (Some(from), Some(to)) = (find(from), find(to)) {
-            text.push_str(&arrow(from.at, to.at));
+            text.push_str(&between(from.at, to.at));
         }
     }
     for part in &parts {
@@ -98,28 +98,10 @@ fn arrows(model: &Model) -> Vec<(&str, &str)> {
         .collect()
 }
 
-fn arrow(from: [f64; 2], to: [f64; 2]) -> String {
-    let (a, b) = (
+fn between(from: [f64; 2], to: [f64; 2]) -> String {
+    arrow(
         [from[0] + PART[0] / 2.0, from[1]],
         [to[0] - PART[0] / 2.0, to[1]],
-    );
-    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    let length = dx.hypot(dy).max(1.0);
-    let (u, n) = ([dx / length, dy / length], [-dy / length, dx / length]);
-    let barb = |side: f64| {
-        let at = |k: usize| b[k] - 7.0 * u[k] + side * 4.0 * n[k];
-        format!("{:.1} {:.1}", at(0), at(1))
-    };
-    format!(
-        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}M{}L{:.1} {:.1}L{}\"/>",
-        a[0],
-        a[1],
-        b[0],
-        b[1],
-        barb(1.0),
-        b[0],
-        b[1],
-        barb(-1.0)
     )
 }
 

@@ -11,11 +11,38 @@ pub(super) const ROW: f64 = 130.0;
 pub(super) const BOX: [f64; 2] = [88.0, 52.0];
 /// The first column and the first row.
 pub(super) const FIRST: [f64; 2] = [90.0, 80.0];
-pub(super) fn label([x, y]: [f64; 2], text: &str) -> String {
+pub(super) fn label(at: [f64; 2], text: &str) -> String {
+    anchored(at, "middle", text)
+}
+
+/// A text that starts, ends or has its middle at a place.
+pub(super) fn anchored([x, y]: [f64; 2], anchor: &str, text: &str) -> String {
     format!(
-        "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" stroke=\"none\" fill=\"{}\">{}</text>",
+        "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" stroke=\"none\" fill=\"{}\">{}</text>",
         NEUTRAL_COLOURS[0].light,
         escape(text)
+    )
+}
+
+/// An arrow from one place to another.
+pub(super) fn arrow(a: [f64; 2], b: [f64; 2]) -> String {
+    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+    let length = dx.hypot(dy).max(1.0);
+    let (u, n) = ([dx / length, dy / length], [-dy / length, dx / length]);
+    let barb = |side: f64| {
+        let at = |k: usize| b[k] - 7.0 * u[k] + side * 4.0 * n[k];
+        format!("{:.1} {:.1}", at(0), at(1))
+    };
+    format!(
+        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}M{}L{:.1} {:.1}L{}\"/>",
+        a[0],
+        a[1],
+        b[0],
+        b[1],
+        barb(1.0),
+        b[0],
+        b[1],
+        barb(-1.0)
     )
 }
 
