@@ -11,13 +11,14 @@ use simgap_app::diagnosis::{
 };
 use simgap_app::input::{Input, RecordOptions};
 use simgap_report::summary::{Styles, summary_text};
+use simgap_simulate::ExternalPlant;
 
 use crate::error::raised;
 use crate::frame::{Frame, frame};
 use crate::model::NativeModel;
-use crate::plant::{Raised, called, taken};
+use crate::plant::attended_with;
 use crate::record::{NativeRecord, options};
-use crate::work::{Link, attended};
+use crate::work::Link;
 
 /// The answer of a diagnosis.
 #[pyclass(frozen, name = "Answer", module = "simgap._simgap")]
@@ -79,14 +80,14 @@ struct Asked {
     records: RecordOptions,
     withheld: Vec<String>,
     budget_s: Option<f64>,
-    simulator: Option<Py<PyAny>>,
-    raised: Raised,
 }
 
 impl Asked {
-    fn answer(mut self, link: &Link<Result<Answer, AppError>>) -> Result<Answer, AppError> {
-        let simulator = self.simulator.take();
-        let plant = simulator.map(|function| called(function, &self.raised, &link.cancel));
+    fn answer(
+        &self,
+        link: &Link<Result<Answer, AppError>>,
+        plant: Option<Arc<ExternalPlant>>,
+    ) -> Result<Answer, AppError> {
         let judged = match self.check.is_empty() {
             true => &self.train,
             false => &self.check,
@@ -137,7 +138,6 @@ pub(crate) fn diagnose(
     on_step: Option<Bound<'_, PyAny>>,
     simulator: Option<Py<PyAny>>,
 ) -> PyResult<NativeAnswer> {
-    let raised_there = Raised::default();
     let inputs = |records: &[Bound<'_, NativeRecord>]| {
         let records = records.iter();
         records.map(|record| record.get().input.clone()).collect()
@@ -150,15 +150,10 @@ pub(crate) fn diagnose(
         records: options(map, columns, mend),
         withheld: withhold,
         budget_s,
-        simulator,
-        raised: Raised::clone(&raised_there),
     };
-    let answer = attended(py, on_step.as_ref(), move |link| asked.answer(link));
-    // What the simulator raised comes before what it led to.
-    if let Some(error) = taken(&raised_there) {
-        return Err(error);
-    }
-    let answer = answer?;
+    let answer = attended_with(py, on_step.as_ref(), simulator, move |link, plant| {
+        asked.answer(link, plant)
+    })?;
     Ok(NativeAnswer {
         answer: answer.map_err(raised)?,
     })

@@ -9,9 +9,10 @@ use simgap_diagnose::Cancel;
 use simgap_simulate::{ExternalPlant, Plant, PlantError, PlantRun};
 
 use crate::frame::values;
+use crate::work::{Link, attended};
 
 /// What the user's function raised, until it is raised again.
-pub(crate) type Raised = Arc<Mutex<Option<PyErr>>>;
+type Raised = Arc<Mutex<Option<PyErr>>>;
 
 /// A function of parameters, inputs, forces and the names of the wanted outputs, which gives one array for each of these.
 struct Called {
@@ -20,18 +21,29 @@ struct Called {
     cancel: Cancel,
 }
 
-/// A simulator that calls a function of Python; what it raises ends the work and is kept in `raised`.
-pub(crate) fn called(function: Py<PyAny>, raised: &Raised, cancel: &Cancel) -> Arc<ExternalPlant> {
-    ExternalPlant::new(Called {
-        function,
-        raised: Arc::clone(raised),
-        cancel: cancel.clone(),
-    })
-}
-
-/// What was raised, if anything was.
-pub(crate) fn taken(raised: &Raised) -> Option<PyErr> {
-    raised.lock().unwrap_or_else(PoisonError::into_inner).take()
+/// As [`attended`], with a simulator of the user's. What that raises ends the work, and is raised here before what it led to.
+pub(crate) fn attended_with<T: Send + 'static>(
+    py: Python<'_>,
+    on_step: Option<&Bound<'_, PyAny>>,
+    simulator: Option<Py<PyAny>>,
+    work: impl FnOnce(&Link<T>, Option<Arc<ExternalPlant>>) -> T + Send + 'static,
+) -> PyResult<T> {
+    let raised = Raised::default();
+    let kept = Raised::clone(&raised);
+    let done = attended(py, on_step, move |link| {
+        let plant = simulator.map(|function| {
+            ExternalPlant::new(Called {
+                function,
+                raised: kept,
+                cancel: link.cancel.clone(),
+            })
+        });
+        work(link, plant)
+    });
+    match raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        Some(error) => Err(error),
+        None => done,
+    }
 }
 
 impl Plant for Called {

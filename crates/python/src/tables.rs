@@ -10,9 +10,8 @@ use simgap_effects::catalogue;
 use crate::error::raised;
 use crate::frame::{Frame, frame};
 use crate::model::NativeModel;
-use crate::plant::{Raised, called, taken};
+use crate::plant::attended_with;
 use crate::record::NativeRecord;
-use crate::work::attended;
 
 /// Columns and notes of the prediction of a model.
 #[pyfunction]
@@ -24,19 +23,13 @@ pub(crate) fn simulate<'py>(
     from_rest: bool,
     simulator: Option<Py<PyAny>>,
 ) -> PyResult<(Frame<'py>, Vec<String>)> {
-    let raised_there = Raised::default();
-    let keep = Raised::clone(&raised_there);
     let model = Arc::clone(&model.get().model);
     let input = record.get().input.clone();
-    let found = attended(py, None, move |link| {
-        let plant = simulator.map(|function| called(function, &keep, &link.cancel));
+    let found = attended_with(py, None, simulator, move |_, plant| {
         let input = input.of_inputs(&model)?;
         simulation::simulate_with(&model, &input, from_rest, plant)
-    });
-    if let Some(error) = taken(&raised_there) {
-        return Err(error);
-    }
-    let found = found?.map_err(|error: AppError| raised(error))?;
+    })?;
+    let found = found.map_err(|error: AppError| raised(error))?;
     Ok((frame(py, found.headers, &found.columns), found.notes))
 }
 
