@@ -7,7 +7,7 @@ use crate::kinds::{PARAMETERS, group};
 use crate::plan::{Role, Wanted};
 use crate::plant::{Place, Quantity, Unit};
 use crate::rng::Rng;
-use crate::sizing::{NEAR, far_off, sized, swings_little};
+use crate::sizing::{NEAR, far_off, largest, sized, swings_little};
 
 /// Gap of a channel that an effect may cause, as a share of its motion.
 const GAP: (f64, f64) = (0.03, 0.6);
@@ -49,9 +49,8 @@ fn judged(mut draft: Draft) -> Option<Draft> {
     for record in [0, check] {
         let free = draft.bench.free_responses(record);
         let gaps = draft.bench.gap(&all, record, &free)?;
-        let largest = gaps.iter().copied().fold(0.0, f64::max);
-        least = least.min(largest);
-        draft.gap = largest;
+        draft.gap = largest(&gaps);
+        least = least.min(draft.gap);
         draft.gaps = gaps;
         // Each of a pair must matter beside the other.
         if draft.effects.len() > 1 && record == check {
@@ -60,9 +59,7 @@ fn judged(mut draft: Draft) -> Option<Draft> {
                     .bench
                     .gap(std::slice::from_ref(effect), record, &free)?;
                 let apart = alone.iter().zip(&draft.gaps).map(|(a, g)| (a - g).abs());
-                if alone.iter().copied().fold(0.0, f64::max) < GAP.0
-                    || apart.fold(0.0, f64::max) < 0.1 * GAP.0
-                {
+                if largest(&alone) < GAP.0 || apart.fold(0.0, f64::max) < 0.1 * GAP.0 {
                     return None;
                 }
             }
@@ -97,7 +94,7 @@ fn parameters(mut draft: Draft, rng: &mut Rng) -> Option<Draft> {
     for record in [0, check] {
         let free = draft.bench.free_responses(record);
         let gaps = draft.bench.gap(&wrong, record, &free)?;
-        draft.gap = gaps.iter().copied().fold(0.0, f64::max);
+        draft.gap = largest(&gaps);
         draft.gaps = gaps;
         if draft.gap < GAP.0 {
             return None;
@@ -108,7 +105,7 @@ fn parameters(mut draft: Draft, rng: &mut Rng) -> Option<Draft> {
             bench.plant = bench.without.clone();
             apply(&mut bench.plant, one);
             let alone = bench.gap(std::slice::from_ref(one), record, &free)?;
-            if alone.iter().copied().fold(0.0, f64::max) < GAP.0 {
+            if largest(&alone) < GAP.0 {
                 return None;
             }
         }
@@ -184,7 +181,7 @@ fn slip(mut draft: Draft, kind: &'static str, rng: &mut Rng) -> Option<Draft> {
         let gaps = draft
             .bench
             .gap(std::slice::from_ref(&effect), check, &free)?;
-        draft.gap = gaps.iter().copied().fold(0.0, f64::max);
+        draft.gap = largest(&gaps);
         if draft.gap < GAP.0 {
             return None;
         }

@@ -5,12 +5,17 @@ use crate::draft::Draft;
 use crate::effect::Effect;
 use crate::kinds::{EFFECTS, FOREIGN, PARAMETERS, group};
 use crate::rng::Rng;
-use crate::sizing::{far_off, sized, swings_little};
+use crate::sizing::{NEAR, far_off, largest, sized, swings_little};
 
 /// Gap of a channel that the main cause makes.
 const MAIN: (f64, f64) = (0.1, 0.5);
 /// Gap of each smaller cause, as a share of that.
 const BESIDE: (f64, f64) = (0.05, 0.2);
+/// On the check record: least gap of the main cause over the least one that was aimed at, largest gap of a smaller cause over
+/// that, and largest gap of all together.
+const LEAST_ON_CHECK: f64 = 0.5;
+const MOST_BESIDE: f64 = 0.4;
+const MOST: f64 = 1.5;
 /// Kinds that are tried for each smaller cause.
 const TRIES: usize = 8;
 
@@ -30,8 +35,8 @@ pub(crate) fn mixed(mut draft: Draft, kind: &'static str, rng: &mut Rng) -> Opti
         false => sized(&draft.bench, kind, (&plain, &free), MAIN, rng)?,
     };
     let first = draft.bench.gap(std::slice::from_ref(&main), 0, &free)?;
-    let gap = first.iter().copied().fold(0.0, f64::max);
-    if !(MAIN.0..1.2 * MAIN.1).contains(&gap) {
+    let gap = largest(&first);
+    if !(MAIN.0..NEAR * MAIN.1).contains(&gap) {
         return None;
     }
     draft.effects.push(main);
@@ -61,21 +66,17 @@ pub(crate) fn mixed(mut draft: Draft, kind: &'static str, rng: &mut Rng) -> Opti
     // The main cause is what matters on the check record too, with the others in their places.
     let check = draft.bench.setups.len() - 1;
     let free = draft.bench.free_responses(check);
-    let worst = |effects: &[Effect]| -> Option<f64> {
-        let gaps = draft.bench.gap(effects, check, &free)?;
-        Some(gaps.iter().copied().fold(0.0, f64::max))
-    };
-    let alone = worst(&draft.effects[..1])?;
-    if alone < 0.5 * MAIN.0 {
+    let alone = largest(&draft.bench.gap(&draft.effects[..1], check, &free)?);
+    if alone < LEAST_ON_CHECK * MAIN.0 {
         return None;
     }
     for small in &draft.effects[1..] {
         let gaps = without.gap(std::slice::from_ref(small), check, &free)?;
-        if gaps.iter().any(|gap| *gap > 0.4 * alone) {
+        if largest(&gaps) > MOST_BESIDE * alone {
             return None;
         }
     }
     draft.gaps = draft.bench.gap(&draft.effects, check, &free)?;
-    draft.gap = draft.gaps.iter().copied().fold(0.0, f64::max);
-    (draft.gap < 1.5).then_some(draft)
+    draft.gap = largest(&draft.gaps);
+    (draft.gap < MOST).then_some(draft)
 }

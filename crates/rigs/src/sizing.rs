@@ -14,6 +14,11 @@ pub(crate) const NEAR: f64 = 1.2;
 /// Steps of the search for a size.
 const STEPS: usize = 10;
 
+/// The gap of the channel that shows most.
+pub(crate) fn largest(gaps: &[f64]) -> f64 {
+    gaps.iter().copied().fold(0.0, f64::max)
+}
+
 pub(crate) fn swings_little(bench: &Bench) -> bool {
     let arm = !bench.plant.pendulum.is_empty();
     !arm || (0..bench.setups.len()).all(|record| {
@@ -65,7 +70,7 @@ pub(crate) fn sized(
             size *= 0.3;
             continue;
         };
-        let gap = gaps.iter().copied().fold(0.0, f64::max);
+        let gap = largest(&gaps);
         let off = target / gap.max(1e-9);
         if (1.0 / NEAR..NEAR).contains(&off) {
             return Some(effect);
