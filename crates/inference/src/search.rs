@@ -165,14 +165,16 @@ impl<'a> Search<'a> {
         {
             return Ok(true);
         }
+        let noise = self.noise_of(best);
+        let leaves_noise = self.leaves_noise(best, &noise);
         let gap = Gap {
             square: base.fit.variance.clone(),
-            noise: self.noise_of(best),
+            noise,
             std: self.problem.output_std(),
         };
         let leaves_little =
             gap.left(&best.fit.variance) <= RELEVANT_SHARE && !best.effects().is_empty();
-        Ok((leaves_little || self.leaves_noise(best)) && !self.is_promising(best)?)
+        Ok((leaves_little || leaves_noise) && !self.is_promising(best)?)
     }
 
     /// What no set beyond this one is expected to explain, mean square of each channel: the accuracy of the simulation, noise
@@ -220,8 +222,8 @@ impl<'a> Search<'a> {
         channels.map(|(noise, floor)| noise + floor).collect()
     }
 
-    /// Whether a set leaves nothing but noise. What a converter rounds off looks like noise, and is explained by its steps.
-    fn leaves_noise(&self, set: &CandidateModel) -> bool {
+    /// Whether a set leaves nothing but noise ([`Search::noise_of`] it). What a converter rounds off looks like noise, and is explained by its steps.
+    fn leaves_noise(&self, set: &CandidateModel, noise: &[f64]) -> bool {
         let beside = self.space.candidates.iter();
         let beside = beside.filter(|(candidate, _)| !set.holds(candidate));
         let steps = beside.filter_map(|(candidate, scale)| {
@@ -230,7 +232,7 @@ impl<'a> Search<'a> {
             placed.action().is_stepped().then_some(placed)
         });
         let rounded = rounding_variance(self.problem, &steps.collect::<Vec<_>>());
-        let noise = self.noise_of(set).into_iter().zip(rounded);
+        let noise = noise.iter().zip(rounded);
         let mut channels = set.fit.variance.iter().zip(noise);
         channels.all(|(left, (noise, rounded))| *left < NOISE_KNOWN * (noise - rounded).max(0.0))
     }
