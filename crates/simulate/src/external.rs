@@ -50,7 +50,7 @@ impl ExternalPlant {
         Ok(answer)
     }
 
-    /// The response to forces about a run, measured once.
+    /// The response to forces about a run without any, measured once.
     pub(crate) fn response(
         &self,
         run: &PlantRun<'_>,

@@ -53,26 +53,17 @@ struct Octave {
 }
 
 impl Response {
-    /// Measures (1) of every port.
+    /// Measures (1) of every port about a run without forces.
     pub(crate) fn measure(
         ask: Ask<'_>,
-        run: &PlantRun<'_>,
+        still: &PlantRun<'_>,
         ports: &[[usize; 2]],
     ) -> Result<Response, PlantError> {
-        let still: Vec<(String, Vec<f64>)> = run
-            .forces
-            .iter()
-            .map(|(name, _)| (name.clone(), vec![0.0; run.len]))
-            .collect();
-        let still = PlantRun {
-            forces: &still,
-            ..*run
-        };
-        let at_rest = ask(&still)?;
+        let at_rest = ask(still)?;
         let mut unit = Vec::with_capacity(ports.len());
         for (q, &[_, velocity]) in ports.iter().enumerate() {
             let wanted = PULSE_SHARE * range(&at_rest[velocity]);
-            unit.push(pulse(ask, &still, (q, velocity), &at_rest, wanted)?);
+            unit.push(pulse(ask, still, (q, velocity), &at_rest, wanted)?);
         }
         let sets_in = |(q, &[_, velocity]): (usize, &[usize; 2])| {
             let own: &Vec<f64> = &unit[q][velocity];
@@ -98,7 +89,7 @@ impl Response {
             lag,
             ports: ports.to_vec(),
             octaves: vec![],
-            whole: Whole::new(run.len),
+            whole: Whole::new(still.len),
         };
         let of_port = |unit: &Vec<Vec<f64>>| {
             let outputs = unit.iter();
@@ -106,7 +97,7 @@ impl Response {
         };
         let spectra: Vec<Vec<Vec<Complex64>>> = response.unit.iter().map(of_port).collect();
         response.whole.spectra = spectra;
-        response.transform(run.len);
+        response.transform(still.len);
         Ok(response)
     }
 
