@@ -274,7 +274,7 @@ fn verify_the_page_on_hydraulics_prints_what_it_shows() {
 #[test]
 fn verify_the_readme_shows_what_the_demo_prints() {
     let page = fs::read_to_string(root().join("README.md")).unwrap();
-    let (_, after) = page.split_once("simgap-cli -- demo\n```").unwrap();
+    let (_, after) = page.split_once("--bin simgap -- demo\n```").unwrap();
     let block = after.split("```").nth(1).unwrap();
     let shown = block.lines().skip(1).filter(|line| *line != REST);
     let printed = Reader::new().run("simgap demo");
