@@ -211,6 +211,13 @@ pub trait Effect: Sync + Send {
         vec![]
     }
 
+    /// Values of a special case ([`Effect::contains`]), by its kind, at which it acts as these values do or comes nearest; `None` for
+    /// the first of them. Those of a wrong nominal value are meant from the model as given.
+    fn shrunk_to(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Option<Vec<f64>> {
+        let _ = (kind, values, scale);
+        None
+    }
+
     /// What is known of the parameter at a place of [`Effect::parameters`] before any data, where things are of these
     /// sizes.
     fn prior(&self, place: usize, scale: &SiteScale) -> Prior {

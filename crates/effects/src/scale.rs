@@ -28,6 +28,8 @@ pub struct SiteScale {
     pub signal_level: f64,
     /// Stiffness of the nominal springs at the site, N/m.
     pub stiffness_n_per_m: f64,
+    /// Damping of the nominal dampers at the site, N s/m.
+    pub damping_n_s_per_m: f64,
     /// Whether the model has a spring at the site.
     pub has_spring: bool,
     /// Mass of the lighter of the masses at the site, kg.
@@ -72,6 +74,7 @@ impl SiteScale {
             signal_step: 0.0,
             signal_level: 0.0,
             stiffness_n_per_m: force_n / displacement_m,
+            damping_n_s_per_m: force_n / velocity_m_per_s,
             has_spring: true,
             mass_kg: 1.0,
             lines_hz: [0.0; LINES],

@@ -386,6 +386,9 @@ fn verify_special_cases_are_in_the_catalogue_at_the_same_places() {
                 let mut physical = values.clone();
                 effect.make_physical(&mut physical);
                 assert_eq!(physical, values, "{place}");
+                let shrunk = effect.shrunk_to(special.kind(), &values, &scale());
+                let count = special.parameters().len();
+                assert!(shrunk.is_none_or(|small| small.len() == count), "{place}");
             }
         }
     }

@@ -67,6 +67,20 @@ fn verify_asymmetric_damping() {
     assert_near(mean, needed, QUADRATURE * needed);
 }
 
+/// With one damping for both directions it is a damper, or a factor on the damper of the model: c + c_f = f c.
+#[test]
+fn verify_asymmetric_damping_shrinks_to_a_damper() {
+    let scale = SiteScale {
+        damping_n_s_per_m: 50.0,
+        ..SiteScale::plain(0.01, 0.2, 30.0)
+    };
+    let larger = effect("asymmetric_damping");
+    let shrunk = |kind: &str, values: [f64; 2]| larger.shrunk_to(kind, &values, &scale);
+    assert_eq!(shrunk("viscous_damping", [30.0, 30.0]), Some(vec![30.0]));
+    assert_eq!(shrunk("damping_error", [30.0, 30.0]), Some(vec![1.6]));
+    assert_eq!(shrunk("damping_error", [40.0, 20.0]), Some(vec![1.6]));
+}
+
 /// The law of a kind that looks at the members of a model.
 fn member_law(kind: &str, values: &[f64], model: &Model, at: &Location) -> Box<dyn ForceLaw> {
     match effect(kind).action(values) {

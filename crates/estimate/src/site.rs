@@ -53,9 +53,11 @@ impl Problem {
             _ => 0.0,
         };
         let displacement_m = positive(rms_about_mean(|| path.displacement.iter()));
+        let velocity_m_per_s = positive(rms_about_mean(|| path.velocity.iter()));
         let force_n = positive(inertia);
         let longest = self.runs.iter().map(Run::duration_s).fold(0.0, f64::max);
         let stiffness = stiffness_at(&self.model, at);
+        let damping = damping_at(&self.model, at);
         let first = self.runs.first();
         let step = first.map_or(1.0, |run| run.time_step_s);
         let (signal_step, signal_level) = channel
@@ -76,16 +78,17 @@ impl Problem {
             } else {
                 force_n / displacement_m
             },
+            damping_n_s_per_m: if damping > 0.0 {
+                damping
+            } else {
+                force_n / velocity_m_per_s
+            },
             has_spring: stiffness > 0.0,
             mass_kg: at_port.or(mass_at(&self.model, at)).unwrap_or(1.0),
             lines_hz: self.lines_left(fit, at),
             carriers_hz: self.carriers_left(fit, at),
             motion_hz: lines(&[moved.unwrap_or_default()], step),
-            ..SiteScale::plain(
-                displacement_m,
-                positive(rms_about_mean(|| path.velocity.iter())),
-                force_n,
-            )
+            ..SiteScale::plain(displacement_m, velocity_m_per_s, force_n)
         })
     }
 
@@ -186,12 +189,24 @@ fn mass_at(model: &Model, at: &Location) -> Option<f64> {
 }
 
 fn stiffness_at(model: &Model, at: &Location) -> f64 {
-    let springs = model.springs.iter().filter(|spring| match at {
-        Location::Between(pair) => same_pair(&spring.between, pair),
-        Location::Mass(mass) => spring.between.contains(mass),
-        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => false,
-    });
+    let springs = model.springs.iter();
+    let springs = springs.filter(|spring| is_member_at(&spring.between, at));
     springs.map(|spring| spring.stiffness).sum()
+}
+
+fn damping_at(model: &Model, at: &Location) -> f64 {
+    let dampers = model.dampers.iter();
+    let dampers = dampers.filter(|damper| is_member_at(&damper.between, at));
+    dampers.map(|damper| damper.damping).sum()
+}
+
+/// Whether a member joins the two nodes of a place, or the mass of one to any node.
+fn is_member_at(between: &[String; 2], at: &Location) -> bool {
+    match at {
+        Location::Between(pair) => same_pair(between, pair),
+        Location::Mass(mass) => between.contains(mass),
+        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => false,
+    }
 }
 
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {

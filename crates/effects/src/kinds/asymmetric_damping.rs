@@ -94,6 +94,15 @@ impl Effect for AsymmetricDamping {
         }
     }
 
+    /// The mean of both directions.
+    fn shrunk_to(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Option<Vec<f64>> {
+        let mean = 0.5 * (values[0] + values[1]);
+        match kind {
+            "damping_error" => Some(vec![1.0 + mean / scale.damping_n_s_per_m]),
+            _ => Some(vec![mean]),
+        }
+    }
+
     fn coincidence(&self) -> Option<[usize; 2]> {
         Some([0, 1])
     }

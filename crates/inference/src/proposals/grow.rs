@@ -7,7 +7,7 @@ use simgap_estimate::{Base, EstimateError, Start, linearise_at, score_outright};
 use simgap_model::{GROUND, Location};
 
 use crate::candidate_model::{
-    CandidateModel, NominalPrior, add_scored, is_nominal, remove, replace,
+    CandidateModel, NominalPrior, add_scored, is_nominal, name, remove, replace,
 };
 use crate::search::Search;
 
@@ -39,15 +39,24 @@ impl Search<'_> {
         });
         let starts: Vec<Start> = special
             .filter_map(|(candidate, scale)| {
-                let mut start = base.fit.estimate.clone();
-                // The first values of a larger effect are those of its special case.
-                let mut values = candidate.effect.starts(scale).into_iter().next()?;
-                values
-                    .iter_mut()
-                    .zip(&old.values)
-                    .for_each(|(value, old)| *value = *old);
-                start.effects[index] = Placed::new(candidate.effect, old.at.clone(), values);
-                Some(start)
+                let kind = candidate.effect.kind();
+                let values = old.effect.shrunk_to(kind, &old.values, scale);
+                let values = values.or_else(|| {
+                    // The first values of a larger effect are those of its special case.
+                    let mut values = candidate.effect.starts(scale).into_iter().next()?;
+                    values
+                        .iter_mut()
+                        .zip(&old.values)
+                        .for_each(|(value, old)| *value = *old);
+                    Some(values)
+                })?;
+                let mut small = Placed::new(candidate.effect, old.at.clone(), values);
+                let mut estimated = base.fit.estimate.nominal.iter();
+                if let Some(beside) = estimated.find(|p| name(p) == name(&small)) {
+                    small.values[0] += beside.values[0] - 1.0;
+                }
+                small.effect.make_physical(&mut small.values);
+                Some(replace(&base.fit.estimate, index, small, self.nominal))
             })
             .collect();
         let fitted = starts.par_iter().filter_map(|start| self.fit(start).ok());
