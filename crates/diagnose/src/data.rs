@@ -4,9 +4,10 @@ use std::borrow::Borrow;
 
 use simgap_model::Model;
 use simgap_record::Record;
-use simgap_simulate::{Run, output_unit};
+use simgap_simulate::Run;
 
 use crate::DiagnoseError;
+use crate::units::Units;
 
 /// Share of each record that is held back when no check record is given.
 const HELD_BACK: f64 = 1.0 / 3.0;
@@ -23,8 +24,8 @@ pub(crate) struct Data {
     /// Held back; its time stamps beside it.
     pub(crate) check: Vec<Run>,
     pub(crate) check_times: Vec<Vec<f64>>,
-    /// Unit of each output in the model.
-    pub(crate) output_units: Vec<&'static str>,
+    /// Units of what the first record tells.
+    pub(crate) units: Units,
     /// What a reader must know about the division.
     pub(crate) notes: Vec<String>,
 }
@@ -58,11 +59,7 @@ pub(crate) fn divide<R: Borrow<Record>>(
         train: vec![],
         check: vec![],
         check_times: vec![],
-        output_units: model
-            .outputs
-            .iter()
-            .map(|o| output_unit(o, first.borrow()))
-            .collect(),
+        units: Units::new(model, first.borrow()),
         notes: vec![],
     };
     for record in train.iter().map(Borrow::borrow) {

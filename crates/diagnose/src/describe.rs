@@ -13,6 +13,7 @@ use crate::diagnosis::{
 };
 use crate::place::place_of;
 use crate::structure::describe;
+use crate::units::Units;
 
 /// Probabilities that are stated: nothing is certain, and nothing that is named is impossible.
 const STATED: [f64; 2] = [0.01, 0.99];
@@ -29,6 +30,7 @@ pub(crate) fn verdict(
     decision: &Decision,
     estimate: &Fit,
     checked: &Checked,
+    units: &Units,
 ) -> Verdict {
     let is_unknown = decision.status == Status::Unknown || checked.is_refuted;
     // For `unknown` the final fit is that of something else: the values are those of the search.
@@ -49,7 +51,7 @@ pub(crate) fn verdict(
         .map(|i| {
             let effect = &decision.effects[i];
             let intervals = fitted.and_then(|fit| intervals_of(fit, &effect.placed));
-            self::named(effect, own, intervals.unwrap_or_default())
+            self::named(effect, own, intervals.unwrap_or_default(), units)
         })
         .collect();
     let (effects, leading) = match is_unknown {
@@ -88,11 +90,17 @@ fn intervals_of<'a>(fit: &'a Fit, placed: &Placed) -> Option<&'a [Interval]> {
     own.next().map(|(_, intervals)| &intervals[..])
 }
 
-fn named(posterior: &EffectPosterior, share: f64, intervals: &[Interval]) -> NamedEffect {
+fn named(
+    posterior: &EffectPosterior,
+    share: f64,
+    intervals: &[Interval],
+    units: &Units,
+) -> NamedEffect {
     let effect = posterior.placed.effect;
     let parameters = effect.parameters().iter().zip(intervals);
     let parameters = parameters.map(|(parameter, interval)| NamedParameter {
         name: parameter.name.to_string(),
+        unit: units.of(parameter, &posterior.placed.at),
         value: interval.value,
         ci95: interval.ci95,
     });

@@ -4,7 +4,10 @@
 //! do not see) are written as null.
 
 use serde::Serialize;
+use simgap_effects::unit_of_rotation;
 use simgap_model::Location;
+
+use crate::units::turns;
 
 /// The whole result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,6 +22,9 @@ pub struct Diagnosis {
     pub r#where: Where,
     /// Which effect causes it.
     pub verdict: Verdict,
+    /// Nodes that turn: forces on them are torques in N m, their displacements angles in rad, their masses inertias in kg m^2.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub turning: Vec<String>,
     /// The single effects that fit best, at most twelve, by probability and then by gap.
     pub candidates: Vec<CandidateResult>,
     /// The experiment that would tell the rivals apart, if there are any.
@@ -27,6 +33,17 @@ pub struct Diagnosis {
     pub stopped_early: bool,
     /// What a reader must know: how records were held back, units converted, defects seen.
     pub notes: Vec<String>,
+}
+
+impl Diagnosis {
+    /// The unit of a quantity at a place: as given along a line, of a rotation where the place turns.
+    #[must_use]
+    pub fn unit_at(&self, unit: &str, at: &Location) -> String {
+        match turns(&self.turning, at) {
+            true => unit_of_rotation(unit),
+            false => unit.to_string(),
+        }
+    }
 }
 
 /// The gap on the check records.
@@ -253,8 +270,10 @@ pub struct NamedEffect {
 /// An estimated value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NamedParameter {
-    /// Name with the unit in it.
+    /// Name with the unit in it, as the model file has it: that of a motion along a line.
     pub name: String,
+    /// Unit, SI: `N m` for a force where the place turns, that of the channel in a channel; empty for a pure number.
+    pub unit: String,
     /// Estimate.
     pub value: f64,
     /// 95 % interval.

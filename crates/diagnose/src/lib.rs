@@ -78,6 +78,7 @@ mod prepared;
 mod sets;
 mod spread;
 mod structure;
+mod units;
 
 pub use diagnosis::*;
 pub use error::DiagnoseError;

@@ -7,6 +7,7 @@ use simgap_model::{Location, Model};
 use crate::data::Data;
 use crate::diagnosis::{ChannelSeries, CheckSeries, NamedParameter};
 use crate::gap::Prediction;
+use crate::units::Units;
 
 /// A nominal parameter as the final fit has it, under its prior.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +23,11 @@ pub struct NominalEstimate {
 }
 
 /// Every nominal parameter of a fit; values that are several numbers count as their first.
-pub(crate) fn nominal_estimates(problem: &Problem, fit: &Fit) -> Vec<NominalEstimate> {
+pub(crate) fn nominal_estimates(
+    problem: &Problem,
+    fit: &Fit,
+    units: &Units,
+) -> Vec<NominalEstimate> {
     let nominal = fit.estimate.nominal.iter().zip(&fit.nominal_intervals);
     nominal
         .filter_map(|(placed, intervals)| {
@@ -33,6 +38,7 @@ pub(crate) fn nominal_estimates(problem: &Problem, fit: &Fit) -> Vec<NominalEsti
                 at: placed.at.clone(),
                 parameter: NamedParameter {
                     name: parameter.name.to_string(),
+                    unit: units.of(parameter, &placed.at),
                     value: interval.value,
                     ci95: interval.ci95,
                 },
@@ -84,7 +90,7 @@ pub(crate) fn series(
             .enumerate()
             .map(|(c, (nominal, corrected))| ChannelSeries {
                 channel: check.model.outputs[c].channel.clone(),
-                unit: data.output_units[c],
+                unit: data.units.of_output(c),
                 nominal,
                 corrected,
                 measured: run.measured[c].clone().unwrap_or_default(),

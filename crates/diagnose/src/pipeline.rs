@@ -249,7 +249,7 @@ fn finish<R: Borrow<Record>>(
     let placed: Vec<Placed> = estimate.estimate.placed().cloned().collect();
     let check = Check::new(&prepared.train, &prepared.recalibrated, data.check.clone())?;
     let checked = check.of((&estimate, options), &placed)?;
-    let verdict = describe::verdict(request.model, &decision, &estimate, &checked);
+    let verdict = describe::verdict(request.model, &decision, &estimate, &checked, &data.units);
     let candidates = describe::candidates(&decision, &verdict, &check)?;
     let floors: Vec<f64> = checked.gap.channels.iter().map(|c| c.noise_floor).collect();
     let located = Located::new(&check.problem, &checked.predictions[0], &floors);
@@ -281,7 +281,7 @@ fn finish<R: Borrow<Record>>(
         motions,
         nominal: match verdict_status {
             Status::Unknown => vec![],
-            _ => nominal_estimates(&prepared.train, &estimate),
+            _ => nominal_estimates(&prepared.train, &estimate, &data.units),
         },
         sets: fitted_sets(&decision.posterior),
         diagnosis: Diagnosis {
@@ -291,6 +291,7 @@ fn finish<R: Borrow<Record>>(
             r#where,
             next_experiment: describe::next_experiment(&verdict),
             verdict,
+            turning: data.units.turning.clone(),
             candidates,
             stopped_early,
             notes,

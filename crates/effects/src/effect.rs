@@ -3,7 +3,7 @@
 use simgap_integrate::exact::ForceLaw;
 use simgap_model::{Location, Model, NominalQuantity};
 
-pub use crate::parameter::Parameter;
+pub use crate::parameter::{Parameter, unit_of_rotation};
 use crate::prior::{Prior, SIZE_LOG_STD};
 pub use crate::scale::{LINES, SiteScale};
 use crate::{Line, SignalMap, Wave};

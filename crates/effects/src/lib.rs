@@ -37,7 +37,7 @@ mod wave;
 pub use catalogue::{catalogue, find};
 pub use effect::{
     Action, Clock, Effect, Family, LINES, LawOfModel, ModelChange, Parameter, SiteKind, SiteScale,
-    usual_prior,
+    unit_of_rotation, usual_prior,
 };
 pub use equivalent::{Equivalent, equivalents, equivalents_beside, likelier_line};
 pub use error::EffectError;

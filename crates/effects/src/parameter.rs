@@ -1,5 +1,33 @@
 //! A parameter of an effect.
 
+/// A unit where what moves along a line turns: a torque for a force, an angle for a length, an inertia for a mass.
+///
+/// ```
+/// use simgap_effects::unit_of_rotation;
+///
+/// assert_eq!(unit_of_rotation("N s^2/m^2"), "N m s^2/rad^2");
+/// assert_eq!(unit_of_rotation("kg"), "kg m^2");
+/// assert_eq!(unit_of_rotation("Hz"), "Hz");
+/// ```
+#[must_use]
+pub fn unit_of_rotation(unit: &str) -> String {
+    let of_factor = |factor: &str| {
+        let (symbol, power) = factor.split_at(factor.find('^').unwrap_or(factor.len()));
+        match symbol {
+            "N" => format!("N{power} m{power}"),
+            "m" => format!("rad{power}"),
+            "kg" => format!("kg{power} m^2"),
+            _ => factor.to_string(),
+        }
+    };
+    let of_product = |product: &str| {
+        let factors: Vec<String> = product.split(' ').map(of_factor).collect();
+        factors.join(" ")
+    };
+    let parts: Vec<String> = unit.split('/').map(of_product).collect();
+    parts.join("/")
+}
+
 /// A parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {

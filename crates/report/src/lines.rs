@@ -2,7 +2,6 @@
 //! terminal.
 
 use simgap_diagnose::{Diagnosis, Status};
-use simgap_model::Location;
 
 use crate::wording::{headline, particulars};
 
@@ -15,7 +14,7 @@ pub fn answer_lines(diagnosis: &Diagnosis) -> Vec<String> {
         return vec![];
     }
     let mut lines = vec![headline(diagnosis)];
-    lines.extend(particulars(diagnosis, &|_: &Location| String::new()));
+    lines.extend(particulars(diagnosis));
     let plain = |line: &String| -> String {
         let spaced = line
             .chars()

@@ -1,7 +1,6 @@
 //! A diagnosis in ten to twenty lines for a terminal.
 
 use simgap_diagnose::{Diagnosis, Status};
-use simgap_model::Location;
 
 use crate::lines::wrap;
 use crate::number::{percent, ratio};
@@ -63,7 +62,7 @@ impl Styles {
 /// #         noise_floor: 0.020, input_noise: 0.0, closed: 0.0, channels: vec![] },
 /// #     r#where: Where { channels: vec![], locations: vec![], bands: vec![], times: vec![], states: vec![], records: vec![] },
 /// #     verdict: Verdict::default(),
-/// #     stopped_early: false, candidates: vec![], next_experiment: None, notes: vec![],
+/// #     stopped_early: false, turning: vec![], candidates: vec![], next_experiment: None, notes: vec![],
 /// # };
 /// let text = summary_text(&diagnosis, Styles::plain());
 /// assert!(text.starts_with("The gap of 0.0210 is measurement noise; nothing to add to the model.\n"));
@@ -81,7 +80,7 @@ pub fn summary_text(diagnosis: &Diagnosis, styles: Styles) -> String {
     for line in wrap(&clean(&headline(diagnosis)), WIDTH) {
         out.push(&format!("{tone}{line}{}", styles.reset));
     }
-    for text in particulars(diagnosis, &|_: &Location| String::new()) {
+    for text in particulars(diagnosis) {
         for line in wrap(&clean(&text), WIDTH - 2) {
             out.push(&format!("  {line}"));
         }

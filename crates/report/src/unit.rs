@@ -1,7 +1,6 @@
 //! Units out of parameter names, and prefixes that keep numbers short.
 
 use simgap_diagnose::NamedParameter;
-use simgap_effects::find;
 
 use crate::number::{at_resolution, decimal_exponent};
 
@@ -41,6 +40,13 @@ pub(crate) fn quantity(name: &str) -> Quantity {
         words: parts[..start].join(" "),
         unit,
     }
+}
+
+/// m³ for m^3.
+pub(crate) fn raised(unit: &str) -> String {
+    let powers = [("^2", "²"), ("^3", "³"), ("^4", "⁴"), ("^5", "⁵")];
+    let spell = |text: String, (plain, raised): (&str, &str)| text.replace(plain, raised);
+    powers.into_iter().fold(unit.to_owned(), spell)
 }
 
 /// `n` is N, `m3` is m³; `None` for a word that is no unit.
@@ -127,25 +133,10 @@ pub(crate) struct Estimate {
     pub(crate) plus_minus: String,
 }
 
-/// What the catalogue writes for the unit that the records give a channel.
-const OF_THE_OUTPUT: &str = "unit of the output";
-
-/// Unit of a parameter that is in the unit of the channel it acts on, or in that unit by the second.
-fn unit_of_channel(kind: &str, parameter: &str, channel_unit: &str) -> Option<String> {
-    let known = find(kind)?.parameters();
-    let known = known.iter().find(|known| known.name == parameter)?;
-    let per = known.unit.strip_prefix(OF_THE_OUTPUT)?;
-    Some(match (channel_unit, per) {
-        ("", per) if !per.is_empty() => format!("1{per}"),
-        _ => format!("{channel_unit}{per}"),
-    })
-}
-
-/// The estimate of a parameter of such an effect, to the two digits that its interval can carry. `channel_unit` is the unit
-/// of the channel on which the effect acts, empty for an effect that acts on none.
-pub(crate) fn estimate(kind: &str, parameter: &NamedParameter, channel_unit: &str) -> Estimate {
-    let Quantity { words, unit } = quantity(&parameter.name);
-    let unit = unit_of_channel(kind, &parameter.name, channel_unit).unwrap_or(unit);
+/// The estimate of a parameter, to the two digits that its interval can carry.
+pub(crate) fn estimate(parameter: &NamedParameter) -> Estimate {
+    let words = quantity(&parameter.name).words;
+    let unit = raised(&parameter.unit);
     let [low, high] = parameter.ci95;
     let Prefixed { unit, factor } = prefixed(&unit, parameter.value.abs());
     let half = 0.5 * (high - low) * factor;
@@ -234,26 +225,25 @@ mod tests {
     }
 
     fn shown(name: &str, value: f64, ci95: [f64; 2]) -> (String, String) {
-        let parameter = NamedParameter {
+        let e = estimate(&NamedParameter {
             name: name.to_owned(),
+            unit: quantity(name).unit,
             value,
             ci95,
-        };
-        let e = estimate("coulomb_friction", &parameter, "");
+        });
         (e.value, e.interval)
     }
 
     #[test]
     fn verify_uncertainty_has_one_digit_or_two() {
         let shown = |value, low, high| {
-            let name = "friction_force_n".to_owned();
-            let ci95 = [low, high];
-            estimate(
-                "coulomb_friction",
-                &NamedParameter { name, value, ci95 },
-                "",
-            )
-            .plus_minus
+            let parameter = NamedParameter {
+                name: "friction_force_n".to_owned(),
+                unit: "N".to_owned(),
+                value,
+                ci95: [low, high],
+            };
+            estimate(&parameter).plus_minus
         };
         assert_eq!(
             shown(2104.3, 2051.0, 2157.6),
@@ -266,27 +256,26 @@ mod tests {
     }
 
     #[test]
-    fn verify_only_what_is_in_the_unit_of_a_channel_takes_it() {
-        let shown = |kind: &str, name: &str, value: f64, unit: &str| {
-            let name = name.to_owned();
-            let ci95 = [0.9 * value, 1.1 * value];
-            estimate(kind, &NamedParameter { name, value, ci95 }, unit).value
+    fn verify_values_are_told_in_their_unit() {
+        let shown = |name: &str, value: f64, unit: &str| {
+            let parameter = NamedParameter {
+                name: name.to_owned(),
+                unit: unit.to_owned(),
+                value,
+                ci95: [0.9 * value, 1.1 * value],
+            };
+            estimate(&parameter).value
         };
-        assert_eq!(shown("sensor_bias", "bias", 0.0012, "m"), "1.20\u{a0}mm");
-        assert_eq!(shown("sensor_bias", "bias", 0.0012, ""), "0.00120");
-        let drift = |unit| shown("sensor_drift", "drift_rate_per_s", 0.0012, unit);
-        assert_eq!(drift("m"), "1.20\u{a0}mm/s");
-        assert_eq!(drift(""), "0.00120\u{a0}1/s");
-        let pure = [
-            ("alternating_timing", "even_share"),
-            ("alternating_gain", "gain_difference"),
-            ("sensor_gain", "gain_factor"),
-        ];
-        for (kind, name) in pure {
-            assert!(find(kind).is_some_and(|e| e.parameters().iter().any(|p| p.name == name)));
-            assert_eq!(shown(kind, name, 0.52, "m"), "0.520", "{kind}");
-        }
-        assert_eq!(shown("sensor_delay", "delay_s", 0.002, "m"), "2.00\u{a0}ms");
+        assert_eq!(shown("bias", 0.0012, "m"), "1.20\u{a0}mm");
+        assert_eq!(shown("bias", 0.0012, ""), "0.00120");
+        assert_eq!(shown("drift_rate_per_s", 0.0012, "m/s"), "1.20\u{a0}mm/s");
+        assert_eq!(shown("gain_difference", 0.52, ""), "0.520");
+        assert_eq!(
+            shown("friction_force_n", 2104.0, "N m"),
+            "2.10\u{a0}kN\u{a0}m"
+        );
+        let cubic = shown("cubic_stiffness_n_per_m3", 5.0, "N m/rad^3");
+        assert_eq!(cubic, "5.00\u{a0}N\u{a0}m/rad³");
     }
 
     #[test]

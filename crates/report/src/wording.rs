@@ -102,12 +102,12 @@ pub(crate) fn sentence(text: &str) -> String {
 }
 
 /// "friction force 2.10 kN (95 % interval 2.05 to 2.15 kN)", several joined by "and".
-fn parameters(effect: &NamedEffect, unit: &str) -> String {
+fn parameters(effect: &NamedEffect) -> String {
     let each: Vec<String> = effect
         .parameters
         .iter()
         .map(|p| {
-            let e = estimate(&effect.kind, p, unit);
+            let e = estimate(p);
             if !is_fitted(p) {
                 return format!("{} {}", e.words, e.value);
             }
@@ -186,7 +186,7 @@ fn with_figure(effect: &NamedEffect) -> String {
     let (Some(parameter), None) = (fitted.next(), fitted.next()) else {
         return format!("{name} {place}");
     };
-    let e = estimate(&effect.kind, parameter, "");
+    let e = estimate(parameter);
     if !parameter.value.is_finite() {
         format!("{name} {place}")
     } else if e.words.ends_with("factor") {
@@ -200,10 +200,7 @@ fn with_figure(effect: &NamedEffect) -> String {
 
 /// What stands under the headline: values with intervals and probabilities, or why nothing is
 /// named. One sentence each.
-pub(crate) fn particulars(
-    diagnosis: &Diagnosis,
-    unit_at: &dyn Fn(&Location) -> String,
-) -> Vec<String> {
+pub(crate) fn particulars(diagnosis: &Diagnosis) -> Vec<String> {
     let gap = &diagnosis.gap;
     let mut out = Vec::new();
     match diagnosis.verdict.status {
@@ -227,7 +224,7 @@ pub(crate) fn particulars(
     }
     let alone = diagnosis.verdict.effects.len() == 1;
     for effect in &diagnosis.verdict.effects {
-        let mut parts = vec![parameters(effect, &unit_at(&effect.at))];
+        let mut parts = vec![parameters(effect)];
         parts.push(format!("probability {}", percent(effect.probability)));
         parts.retain(|p| !p.is_empty());
         let text = parts.join(", ");

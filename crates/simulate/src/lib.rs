@@ -77,7 +77,7 @@ pub use batch::{Job, Prediction, predict_all};
 pub use error::SimulateError;
 pub use external::ExternalPlant;
 pub use plant::{Plant, PlantError, PlantRun};
-pub use run::{Mended, Run, input_quantity, output_quantity, output_unit};
+pub use run::{Mended, Run, input_quantity, input_unit, output_quantity, output_unit};
 pub use simgap_integrate::exact::lanes::LANES;
 pub use simulator::{MemberPath, Simulator};
 pub use step::substeps_for;

@@ -1,6 +1,6 @@
 //! A record in the units of a model.
 
-use simgap_model::{InputKind, Model, Output, OutputKind};
+use simgap_model::{Input, InputKind, Model, Output, OutputKind};
 use simgap_record::{Quantity, Record};
 
 use crate::SimulateError;
@@ -195,8 +195,24 @@ pub fn output_quantity(kind: OutputKind) -> Quantity {
 /// a column with a gain is taken as a length.
 #[must_use]
 pub fn output_unit(output: &Output, record: &Record) -> &'static str {
-    match record.channel(&output.channel) {
-        Some(channel) if output.gain.is_none() => channel.unit.kind().si_symbol(),
-        _ => output.kind.unit(),
+    unit_of_column(&output.channel, output.gain, output.kind.unit(), record)
+}
+
+/// Unit of an input in the model, likewise.
+#[must_use]
+pub fn input_unit(input: &Input, record: &Record) -> &'static str {
+    unit_of_column(&input.channel, input.gain, input.kind.unit(), record)
+}
+
+/// The SI unit of a column without a gain, or the one given.
+fn unit_of_column(
+    channel: &str,
+    gain: Option<f64>,
+    unit: &'static str,
+    record: &Record,
+) -> &'static str {
+    match record.channel(channel) {
+        Some(channel) if gain.is_none() => channel.unit.kind().si_symbol(),
+        _ => unit,
     }
 }

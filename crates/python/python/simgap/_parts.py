@@ -27,12 +27,14 @@ def _number(value: float | None) -> float:
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """An estimated value, in the unit at the end of its name."""
+    """An estimated value."""
 
     name: str
     value: float
     #: 95 % interval: lower and upper end; nan where the data do not bound it.
     ci95: tuple[float, float]
+    #: SI: ``N m`` for a force where the place turns, that of the channel in a channel; empty for a pure number.
+    unit: str = ""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,7 +67,7 @@ class Effect:
         for one in values["parameters"]:
             low, high = (_number(end) for end in one["ci95"])
             value = _number(one["value"])
-            parameters[one["name"]] = Parameter(one["name"], value, (low, high))
+            parameters[one["name"]] = Parameter(one["name"], value, (low, high), one["unit"])
         rivals = [made(Rival, one) for one in values["indistinguishable"]]
         return made(cls, {**values, "parameters": parameters, "indistinguishable": rivals})
 

@@ -19,12 +19,11 @@ pub(super) fn first_screen(
     html: &mut Html,
     files: &mut Vec<PictureFile>,
     diagnosis: &Diagnosis,
-    unit_at: &dyn Fn(&Location) -> String,
 ) -> Result<(), ReportError> {
     let waterfall = waterfall(diagnosis)?;
     html.within("div", &[("class", "pair first stack")], |html| {
         html.within("div", &[], |html| {
-            for line in particulars(diagnosis, unit_at) {
+            for line in particulars(diagnosis) {
                 html.element("p", &[("class", "lead")], &line);
             }
             figures(html, diagnosis);

@@ -52,12 +52,13 @@ pub(super) fn missing(
     );
     html.within("div", &[("class", "pair")], |html| {
         for (motion, force) in found {
+            let unit = |unit: &str| input.diagnosis.unit_at(unit, &motion.at);
             let over = [
-                ("displacement", "m", &force.displacement),
-                ("velocity", "m/s", &force.velocity),
+                ("displacement", unit("m"), &force.displacement),
+                ("velocity", unit("m/s"), &force.velocity),
             ];
-            for (variable, unit, x) in over {
-                let chart = chart(motion, (variable, unit), x, &force);
+            for (variable, x_unit, x) in over {
+                let chart = chart(motion, (variable, &x_unit, &unit("N")), x, &force);
                 let slug = match variable {
                     "velocity" => "missing-force-velocity",
                     _ => "missing-force-displacement",
@@ -103,12 +104,13 @@ fn is_at(motion: &PlaceMotion, at: &Location) -> bool {
 
 fn chart<'a>(
     motion: &PlaceMotion,
-    (variable, unit): (&str, &str),
+    (variable, unit, force_unit): (&str, &str, &str),
     x: &[f64],
     found: &MissingForce,
 ) -> LineChart<'a> {
     let size = |values: &[f64]| values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    let (x_unit, y_unit) = (prefixed(unit, size(x)), prefixed("N", size(&found.force)));
+    let x_unit = prefixed(unit, size(x));
+    let y_unit = prefixed(force_unit, size(&found.force));
     let points: Vec<(f64, f64)> = x
         .iter()
         .zip(&found.force)

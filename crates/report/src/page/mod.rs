@@ -23,7 +23,6 @@ mod whereabouts;
 mod which;
 
 use simgap_diagnose::{CheckSeries, Diagnosis};
-use simgap_model::Location;
 
 use crate::markup::Html;
 use crate::wording::headline;
@@ -103,6 +102,7 @@ pub fn report(input: &ReportInput<'_>) -> Result<Report, ReportError> {
 ///     },
 ///     verdict: Verdict::default(),
 ///     stopped_early: false,
+///     turning: vec![],
 ///     candidates: vec![],
 ///     next_experiment: None,
 ///     notes: vec![],
@@ -153,19 +153,18 @@ fn body(
     let ReportInput {
         diagnosis, context, ..
     } = *input;
-    let unit_at = |at: &Location| unit_at(pictures, at);
     html.within("header", &[], |html| {
         provenance(html, diagnosis, context);
         html.element("h1", &[], &headline(diagnosis));
     });
     html.within("main", &[], |html| {
-        answer::first_screen(html, files, diagnosis, &unit_at)?;
+        answer::first_screen(html, files, diagnosis)?;
         answer::motion(html, files, pictures)?;
         tables::channels(html, diagnosis);
         whereabouts::whereabouts(html, files, diagnosis, pictures)?;
         force::missing(html, files, input)?;
         which::which(html, files, diagnosis)?;
-        values::values(html, input, &unit_at);
+        values::values(html, input);
         tables::quality(html, diagnosis);
         tables::next_experiment(html, diagnosis);
         computed::computed(html, input);
@@ -196,15 +195,6 @@ fn provenance(html: &mut Html, diagnosis: &Diagnosis, context: &ReportContext) {
             ));
         }
     });
-}
-
-/// The unit of the channel at that place; empty for places that are no output.
-fn unit_at(pictures: &[Pictured<'_>], at: &Location) -> String {
-    let Location::Channel(name) = at else {
-        return String::new();
-    };
-    let found = pictures.iter().find(|p| &p.channel.channel == name);
-    found.map_or(String::new(), |p| p.channel.unit.to_owned())
 }
 
 fn check_lengths(series: &[CheckSeries]) -> Result<(), ReportError> {

@@ -7,7 +7,7 @@ use simgap_model::{Location, same_pair};
 
 use super::ReportInput;
 use crate::number::{percent, significant, trimmed};
-use crate::unit::{Prefixed, prefixed, quantity};
+use crate::unit::{Prefixed, prefixed, quantity, raised};
 
 /// What the machine has and does at the place of an effect, SI; zero where there is none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -75,7 +75,7 @@ fn total(law: &Parameter, parameter: &NamedParameter, around: &Surroundings) -> 
         return None;
     }
     let sum = own + parameter.value;
-    let Prefixed { unit, factor } = prefixed(&unit, sum.abs());
+    let Prefixed { unit, factor } = prefixed(&raised(&parameter.unit), sum.abs());
     let doubt = if sum < 0.0 {
         ", which would drive the machine"
     } else {
@@ -193,6 +193,7 @@ mod tests {
         };
         let parameter = NamedParameter {
             name: name.into(),
+            unit: String::new(),
             value,
             ci95: [0.9 * value, 1.1 * value],
         };

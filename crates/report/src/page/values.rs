@@ -10,22 +10,18 @@ use super::sense::sense;
 use super::tables::table;
 use crate::markup::Html;
 use crate::number::{change, significant};
-use crate::unit::{Prefixed, estimate, prefixed};
+use crate::unit::{Prefixed, estimate, prefixed, raised};
 
 /// Changes of a nominal parameter below this are not told.
 const UNCHANGED: f64 = 1e-3;
 
 /// The section; left out where there is nothing to list.
-pub(super) fn values(
-    html: &mut Html,
-    input: &ReportInput<'_>,
-    unit_at: &dyn Fn(&Location) -> String,
-) {
+pub(super) fn values(html: &mut Html, input: &ReportInput<'_>) {
     let diagnosis = input.diagnosis;
     let changed = match (input.nominal, input.corrected) {
         // A change within the noise is none.
         _ if diagnosis.verdict.status == Status::None => vec![],
-        (Some(nominal), Some(corrected)) => changes(nominal, corrected),
+        (Some(nominal), Some(corrected)) => changes(diagnosis, nominal, corrected),
         _ => vec![],
     };
     if diagnosis.verdict.effects.is_empty() && changed.is_empty() {
@@ -35,7 +31,7 @@ pub(super) fn values(
     for effect in &diagnosis.verdict.effects {
         let head = place_sentence(&effect.kind, &effect.at);
         html.element("h3", &[], &head);
-        effect_values(html, effect, input, &unit_at(&effect.at));
+        effect_values(html, effect, input);
     }
     if !changed.is_empty() {
         html.element("h3", &[], "Parameters of the model itself");
@@ -53,7 +49,7 @@ fn about_changes(diagnosis: &Diagnosis) -> String {
     format!("{with}, as the corrected model has them; changes below 0.1 % are left out.")
 }
 
-fn effect_values(html: &mut Html, effect: &NamedEffect, input: &ReportInput<'_>, unit: &str) {
+fn effect_values(html: &mut Html, effect: &NamedEffect, input: &ReportInput<'_>) {
     if let Some(known) = find(&effect.kind) {
         html.element("p", &[], &crate::wording::sentence(known.summary()));
     }
@@ -64,7 +60,7 @@ fn effect_values(html: &mut Html, effect: &NamedEffect, input: &ReportInput<'_>,
         .parameters
         .iter()
         .map(|p| {
-            let e = estimate(&effect.kind, p, unit);
+            let e = estimate(p);
             let sense = sense(effect, p, input);
             (
                 false,
@@ -83,36 +79,38 @@ fn effect_values(html: &mut Html, effect: &NamedEffect, input: &ReportInput<'_>,
 }
 
 /// Masses, springs, dampers and gains that the corrected model has otherwise.
-fn changes(nominal: &Model, corrected: &Model) -> Vec<(bool, Vec<String>)> {
+fn changes(diagnosis: &Diagnosis, nominal: &Model, corrected: &Model) -> Vec<(bool, Vec<String>)> {
     let mut rows = Vec::new();
+    let unit_of_mass = |name: &String| diagnosis.unit_at("kg", &Location::Mass(name.clone()));
+    let unit_of_member =
+        |unit: &str, pair: &[String; 2]| diagnosis.unit_at(unit, &Location::Between(pair.clone()));
     let mut add = |name: String, unit: &str, was: f64, is: f64| {
         let relative = is / was - 1.0;
         if !relative.is_finite() || relative.abs() < UNCHANGED {
             return;
         }
-        let Prefixed { unit, factor } = prefixed(unit, was.abs());
+        let Prefixed { unit, factor } = prefixed(&raised(unit), was.abs());
         let space = if unit.is_empty() { "" } else { "\u{a0}" };
         let shown = |v: f64| format!("{}{space}{unit}", significant(v * factor, 4));
         rows.push((false, vec![name, shown(was), shown(is), change(relative)]));
     };
     for (a, b) in nominal.masses.iter().zip(&corrected.masses) {
-        let [what, unit] = if nominal.is_roll(&a.name) {
-            ["inertia", "kg m^2"]
-        } else {
-            ["mass", "kg"]
-        };
-        add(format!("{what} {}", a.name), unit, a.value, b.value);
+        let unit = unit_of_mass(&a.name);
+        let what = if unit == "kg" { "mass" } else { "inertia" };
+        add(format!("{what} {}", a.name), &unit, a.value, b.value);
     }
     for (a, b) in nominal.springs.iter().zip(&corrected.springs) {
+        let unit = unit_of_member("N/m", &a.between);
         add(
             format!("spring {}", a.name),
-            "N/m",
+            &unit,
             a.stiffness,
             b.stiffness,
         );
     }
     for (a, b) in nominal.dampers.iter().zip(&corrected.dampers) {
-        add(format!("damper {}", a.name), "N s/m", a.damping, b.damping);
+        let unit = unit_of_member("N s/m", &a.between);
+        add(format!("damper {}", a.name), &unit, a.damping, b.damping);
     }
     for (a, b) in nominal.inputs.iter().zip(&corrected.inputs) {
         if let (Some(was), Some(is)) = (a.gain, b.gain) {

@@ -61,6 +61,7 @@ fn diagnosis() -> Diagnosis {
             ..Verdict::default()
         },
         stopped_early: false,
+        turning: vec![],
         candidates: vec![],
         next_experiment: None,
         notes: vec![],

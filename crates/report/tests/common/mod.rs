@@ -92,6 +92,7 @@ pub fn series_of(status: Status) -> Vec<CheckSeries> {
 
 pub fn effect() -> Diagnosis {
     Diagnosis {
+        turning: vec![],
         stopped_early: false,
         schema: "simgap-diagnosis/1",
         model: "mold-2dof".into(),
@@ -128,7 +129,7 @@ fn friction() -> NamedEffect {
         kind: "coulomb_friction".into(),
         at: between("mold", "ground"),
         probability: 0.974,
-        parameters: vec![NamedParameter { name: "friction_force_n".into(), value: 2104.3, ci95: [2051.0, 2157.6] }],
+        parameters: vec![NamedParameter { name: "friction_force_n".into(), unit: "N".into(), value: 2104.3, ci95: [2051.0, 2157.6] }],
         indistinguishable: vec![Rival {
             kind: "stribeck_friction".into(),
             at: between("mold", "ground"),
@@ -252,6 +253,7 @@ pub fn parameters() -> Diagnosis {
         probability: 0.93,
         parameters: vec![NamedParameter {
             name: "stiffness_factor".into(),
+            unit: String::new(),
             value: 0.9312,
             ci95: [0.9204, 0.9431],
         }],
@@ -316,6 +318,7 @@ pub fn two_effects() -> Diagnosis {
         probability: 0.88,
         parameters: vec![NamedParameter {
             name: "bias".into(),
+            unit: "m".into(),
             value: -1.2e-4,
             ci95: [f64::NEG_INFINITY, f64::INFINITY],
         }],
