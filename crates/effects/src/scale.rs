@@ -20,7 +20,7 @@ pub struct SiteScale {
     pub duration_s: f64,
     /// Smallest and largest displacement across the site, m.
     pub displacement_range_m: [f64; 2],
-    /// Smallest and largest value of the channel as measured, in model units.
+    /// Smallest and largest value of the channel as measured, in model units (input and output sites).
     pub signal_range: [f64; 2],
     /// Step of the values of the channel, in model units; zero where there is none to be seen.
     pub signal_step: f64,
@@ -44,21 +44,7 @@ pub struct SiteScale {
     pub motion_hz: [f64; LINES],
 }
 
-/// [`SiteScale::signal_range`] of a place where no channel is measured.
-const UNKNOWN_RANGE: [f64; 2] = [-1.0, 1.0];
-
 impl SiteScale {
-    /// Range of the values of an input, in model units: as measured where that is known, else three
-    /// times the rms to either side.
-    #[must_use]
-    pub(crate) fn input_range(&self) -> [f64; 2] {
-        if self.signal_range == UNKNOWN_RANGE {
-            [-3.0 * self.signal, 3.0 * self.signal]
-        } else {
-            self.signal_range
-        }
-    }
-
     /// A scale of the sizes every site has; the rest is unknown.
     #[must_use]
     pub fn plain(displacement_m: f64, velocity_m_per_s: f64, force_n: f64) -> SiteScale {

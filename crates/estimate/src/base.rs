@@ -7,9 +7,10 @@ use faer::{Mat, Side};
 use simgap_effects::Placed;
 use simgap_simulate::{Job, predict_all};
 
-use crate::fit::{Known, Merit, fit_with};
+use crate::fit::{Known, fit_with};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, discrepancy, linearise};
+use crate::merit::Merit;
 use crate::normal::normal_equations;
 use crate::products::{inner, inner_products};
 use crate::reach::Reach;

@@ -10,19 +10,19 @@
 //! (1) is the likelihood with the noise variance of each channel concentrated out, ρ_c the share
 //! of independent samples; the sum of (2) is over the samples that the effects say anything about
 //! (`reach`); (4) its Gauss-Newton step, damped after Levenberg and Marquardt.
-//! Entries at a physical bound that the step would push further out are held there.
+//! Entries at a physical bound that the step would push further out are held there. How far a step goes is told in `step.rs`.
 //!
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
 
-use simgap_simulate::LANES;
+use std::sync::Arc;
 
 use crate::curvature::Curvature;
 use crate::layout::{Freedom, Layout};
-use crate::linearise::{Column, Linearised, Probe, complete, discrepancies_of, probe, reach};
-use crate::normal::{damped_step, normal_equations, variances};
-use crate::products::dot;
-use crate::reach::Reach;
+use crate::linearise::{Column, Linearised, Probe, complete, probe};
+use crate::merit::Merit;
+use crate::normal::{normal_equations, variances};
 use crate::signals::Signals;
+use crate::step::Line;
 use crate::{EstimateError, FitOptions, Problem, Start};
 
 /// A parameter value with its 95 % interval.
@@ -60,9 +60,8 @@ pub struct Fit {
 
 /// Two-sided 95 % point of the normal distribution.
 pub const NORMAL_95: f64 = 1.959_964;
-/// λ of (4) at the start, and how often it is raised before a step is given up.
+/// λ of (4) at the start.
 const FIRST_DAMPING: f64 = 1e-4;
-const MOST_DAMPINGS: usize = 8;
 /// Factor on the squared discrepancy beyond which the sensitivities of a fit are no longer kept.
 const STALE: f64 = 2.0;
 
@@ -154,7 +153,8 @@ pub(crate) fn fit_with(
             continue;
         };
         let gain = objective - next.objective;
-        (theta, objective) = (next.theta, next.objective);
+        let before = std::mem::replace(&mut theta, next.theta);
+        objective = next.objective;
         let is_far = (taken_at - objective).abs() > stale;
         if is_far {
             taken_at = objective;
@@ -162,7 +162,10 @@ pub(crate) fn fit_with(
         let keep = weights.keep_nuisance && !is_far;
         let kept = at.columns;
         at = complete(problem, &layout, &theta, next.probe, |run, place| {
-            (keep && layout.is_nuisance(place)).then(|| kept[run][place].clone())
+            (keep && layout.is_nuisance(place)).then(|| {
+                let ratio = ratio(&layout, place, &before, &theta);
+                carried(&kept[run][place], ratio)
+            })
         })?;
         if gain >= weights.converged {
             exact = !keep;
@@ -177,104 +180,26 @@ pub(crate) fn fit_with(
     Ok(finish(&layout, &merit, &theta, at, iterations))
 }
 
-/// An accepted step.
-struct Next {
-    theta: Vec<f64>,
-    objective: f64,
-    probe: Probe,
+/// By how much the entry at a place in the list of [`Layout::entries`] was multiplied, where it is a shared size or factor; one elsewhere.
+fn ratio(layout: &Layout, place: usize, before: &[f64], after: &[f64]) -> f64 {
+    if place >= layout.shared_len() || !layout.is_size[place] {
+        return 1.0;
+    }
+    let ratio = after[place] / before[place];
+    if ratio.is_finite() && ratio > 0.0 {
+        ratio
+    } else {
+        1.0
+    }
 }
 
-/// Where steps are searched.
-struct Line<'a> {
-    layout: &'a Layout,
-    merit: &'a Merit<'a>,
-}
-
-impl Line<'_> {
-    /// One accepted step of (4), or `None` when no damping finds an improvement. The first trial is mostly
-    /// taken: the sensitivities that the next step wants are simulated along with it.
-    fn step(
-        &self,
-        theta: &[f64],
-        objective: f64,
-        at: &Linearised,
-        damping: &mut f64,
-        along: impl Fn(usize, usize) -> bool,
-    ) -> Option<Next> {
-        let layout = self.layout;
-        let (_, variance) = self.merit.of(layout, theta, &at.discrepancy);
-        let weights = self.merit.weights(&variance);
-        let (hessian, gradient) = normal_equations(layout, theta, at, &weights);
-        let free: Vec<usize> = (0..layout.len())
-            .filter(|&i| {
-                let outward = (theta[i] <= layout.lower[i] && gradient[i] < 0.0)
-                    || (theta[i] >= layout.upper[i] && gradient[i] > 0.0);
-                !outward
-            })
-            .collect();
-        // One trial is mostly enough; where it is not, further ones cost little side by side.
-        let together = (LANES / self.merit.problem.runs.len().max(1)).max(1);
-        let mut tried = 0;
-        while tried < MOST_DAMPINGS {
-            let count = if tried == 0 { 1 } else { together };
-            let count = count.min(MOST_DAMPINGS - tried);
-            let mut trials: Vec<(f64, Vec<f64>)> = Vec::with_capacity(count);
-            for _ in 0..count {
-                if let Some(step) = damped_step(&hessian, &gradient, &free, *damping) {
-                    let mut next: Vec<f64> = (0..theta.len())
-                        .map(|i| theta[i] + step[i] * layout.scale[i])
-                        .collect();
-                    layout.make_physical(&mut next);
-                    trials.push((*damping, next));
-                }
-                *damping *= 10.0;
-            }
-            let first = (tried == 0).then_some(&along);
-            tried += count;
-            if let Some((used, next)) = self.first_better(objective, trials, first) {
-                *damping = (used * 0.1).max(1e-9);
-                return Some(next);
-            }
-        }
-        None
+/// A sensitivity of a step before: that to the logarithm of a value changes least, so that to the value goes with its inverse.
+fn carried(column: &Column, ratio: f64) -> Column {
+    if ratio == 1.0 {
+        return column.clone();
     }
-
-    /// The first of several trials, in their order, that lowers the objective.
-    fn first_better(
-        &self,
-        objective: f64,
-        trials: Vec<(f64, Vec<f64>)>,
-        along: Option<&impl Fn(usize, usize) -> bool>,
-    ) -> Option<(f64, Next)> {
-        let (problem, layout) = (self.merit.problem, self.layout);
-        let (dampings, thetas): (Vec<f64>, Vec<Vec<f64>>) = trials.into_iter().unzip();
-        let all: Vec<Result<Probe, EstimateError>> = match along {
-            Some(along) => {
-                let each = thetas.iter();
-                each.map(|theta| probe(problem, layout, theta, along))
-                    .collect()
-            }
-            None => discrepancies_of(problem, layout, &thetas)
-                .into_iter()
-                .map(|signals| Ok(Probe::new(layout, signals?)))
-                .collect(),
-        };
-        for ((damping, theta), probe) in dampings.into_iter().zip(thetas).zip(all) {
-            let Ok(probe) = probe else {
-                continue;
-            };
-            let (value, _) = self.merit.of(layout, &theta, &probe.discrepancy);
-            if value < objective {
-                let next = Next {
-                    theta,
-                    objective: value,
-                    probe,
-                };
-                return Some((damping, next));
-            }
-        }
-        None
-    }
+    let times = |signal: &Vec<f64>| signal.iter().map(|value| value / ratio).collect();
+    Arc::new(column.iter().map(times).collect())
 }
 
 fn finish(
@@ -334,83 +259,5 @@ fn finish(
         curvature,
         discrepancy: at.discrepancy,
         iterations,
-    }
-}
-
-/// The objective (1) and the weights (3).
-pub(crate) struct Merit<'a> {
-    problem: &'a Problem,
-    effective_share: Vec<f64>,
-    floor: Vec<f64>,
-    /// Samples of all runs, and those of each channel that were filled.
-    count: f64,
-    filled: Vec<f64>,
-}
-
-impl<'a> Merit<'a> {
-    pub(crate) fn new(problem: &'a Problem, weights: &FitOptions) -> Merit<'a> {
-        let std = problem.output_std();
-        Merit {
-            problem,
-            effective_share: weights.effective_share.clone(),
-            floor: std
-                .iter()
-                .zip(&weights.floor)
-                .map(|(s, floor)| (floor * s).powi(2).max(f64::MIN_POSITIVE))
-                .collect(),
-            count: problem.runs.iter().map(|run| run.len as f64).sum(),
-            filled: (0..std.len()).map(|c| problem.filled_count(c)).collect(),
-        }
-    }
-
-    /// What a factor on the squared discrepancy of every channel changes in J.
-    pub(crate) fn of_a_factor(&self, factor: f64) -> f64 {
-        0.5 * self.effective_share.iter().sum::<f64>() * self.count * factor.ln()
-    }
-
-    /// V_c, over the samples within reach.
-    pub(crate) fn variance(&self, discrepancy: &[Signals], reach: &Reach) -> Vec<f64> {
-        (0..self.floor.len())
-            .map(|c| {
-                let square = |run: &Signals| dot(&run[c], &run[c]);
-                discrepancy.iter().map(square).sum::<f64>() / reach.count(c).max(1.0)
-            })
-            .collect()
-    }
-
-    /// J and V_c; J is infinite when a simulation ran away.
-    pub(crate) fn of(
-        &self,
-        layout: &Layout,
-        theta: &[f64],
-        discrepancy: &[Signals],
-    ) -> (f64, Vec<f64>) {
-        let reach = reach(self.problem, layout, theta);
-        let variance = self.variance(discrepancy, &reach);
-        let fit: f64 = variance
-            .iter()
-            .zip(&self.floor)
-            .zip(self.effective_share.iter().zip(&self.filled))
-            .map(|((v, floor), (rho, filled))| 0.5 * rho * (self.count - filled) * (v + floor).ln())
-            .sum();
-        let value = fit + self.prior(layout, theta);
-        (if value.is_nan() { f64::INFINITY } else { value }, variance)
-    }
-
-    /// The second sum of (1).
-    pub(crate) fn prior(&self, layout: &Layout, theta: &[f64]) -> f64 {
-        let entries = theta.iter().enumerate();
-        entries
-            .map(|(i, value)| layout.prior_at(i, *value)[0])
-            .sum()
-    }
-
-    pub(crate) fn weights(&self, variance: &[f64]) -> Vec<f64> {
-        let floor = self.floor.iter().zip(&self.effective_share);
-        variance
-            .iter()
-            .zip(floor)
-            .map(|(v, (floor, rho))| rho / (v + floor))
-            .collect()
     }
 }

@@ -61,6 +61,8 @@ pub(crate) struct Layout {
     pub(crate) prior_mean: Vec<f64>,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
+    /// Whether an entry is a size or a factor, shared by all records.
+    pub(crate) is_size: Vec<bool>,
     /// Prior of each entry that is a value of an effect, where sizes of its place are known.
     priors: Vec<Option<(Prior, Parameter)>>,
 }
@@ -90,6 +92,7 @@ impl Layout {
             prior_mean: vec![],
             lower: vec![],
             upper: vec![],
+            is_size: vec![],
             priors: vec![],
         };
         let physical: Vec<Vec<f64>> = start
@@ -171,6 +174,7 @@ impl Layout {
         self.prior_mean.push(0.0);
         self.lower.push(lower);
         self.upper.push(upper);
+        self.is_size.push(false);
         self.priors.push(None);
     }
 
@@ -234,6 +238,9 @@ impl Layout {
         );
         if let (Some(last), Some(mean)) = (self.prior_std.last_mut(), self.prior_mean.last_mut()) {
             (*last, *mean) = (std, neutral);
+        }
+        if let Some(last) = self.is_size.last_mut() {
+            *last = parameter.neutral.is_some_and(f64::is_finite) && !parameter.per_record;
         }
     }
 

@@ -75,6 +75,7 @@ mod initial;
 mod joint;
 mod layout;
 mod linearise;
+mod merit;
 mod normal;
 mod outright;
 mod problem;
@@ -84,6 +85,7 @@ mod score;
 mod signals;
 mod site;
 mod spread;
+mod step;
 mod summary;
 mod whitening;
 

@@ -42,15 +42,18 @@ impl Problem {
             Some(mass) => mass * acceleration,
             None => self.force_scale(at, acceleration),
         };
-        let signal = match (at, channel) {
-            (_, Some(i)) => self.motion_std()[i],
-            (Location::Input(name), None) => {
-                let index = self.model.inputs.iter().position(|i| &i.channel == name);
-                index.map_or(0.0, |i| {
-                    rms_about_mean(|| self.runs.iter().flat_map(move |run| run.inputs[i].iter()))
-                })
-            }
-            _ => 0.0,
+        let input = match at {
+            Location::Input(name) => self.model.inputs.iter().position(|i| &i.channel == name),
+            _ => None,
+        };
+        let sent = |i: usize| self.runs.iter().flat_map(move |run| run.inputs[i].iter());
+        let (signal, signal_range) = match (channel, input) {
+            (Some(i), _) => (
+                self.motion_std()[i],
+                range(self.measured(i).flatten().copied()),
+            ),
+            (None, Some(i)) => (rms_about_mean(|| sent(i)), range(sent(i).copied())),
+            (None, None) => (0.0, [-1.0, 1.0]),
         };
         let displacement_m = positive(rms_about_mean(|| path.displacement.iter()));
         let velocity_m_per_s = positive(rms_about_mean(|| path.velocity.iter()));
@@ -69,8 +72,7 @@ impl Problem {
             time_step_s: step,
             duration_s: positive(longest),
             displacement_range_m: range(path.displacement.iter().copied()),
-            signal_range: channel
-                .map_or([-1.0, 1.0], |i| range(self.measured(i).flatten().copied())),
+            signal_range,
             signal_step,
             signal_level,
             stiffness_n_per_m: if stiffness > 0.0 {

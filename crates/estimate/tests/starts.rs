@@ -292,3 +292,59 @@ fn verify_a_carrier_of_a_broad_motion_is_found() {
     assert!(!problem.lines_left(&fit, &at).iter().any(is_carrier));
     assert!(is_carrier(&problem.carriers_left(&fit, &at)[0]));
 }
+
+/// The force that is measured counts for too little. Masses, springs, dampers and the drive that all count for as much less leave nothing
+/// either: a fit goes through a narrow valley from there to the sensor, whose one wrong value is likelier than four.
+#[test]
+fn verify_a_fit_follows_what_changes_in_proportion() {
+    let force =
+        "[[output]]\nchannel = \"f\"\nkind = \"force\"\nbetween = [\"block\", \"ground\"]\n";
+    let model = model(&format!("{OSCILLATOR}{force}"));
+    let gain = 0.775;
+    let sensor = Location::Channel("f".into());
+    let wrong = [placed("sensor_gain", sensor.clone(), &[gain])];
+    let mut run = truth(&model, &wrong, drive(0.01, 600, 5.0), 0.01, &[0.0, 0.0]);
+    let mut normal = Normal(11);
+    for (signal, std) in run.measured.iter_mut().zip([1e-5, 5e-3]) {
+        let signal = signal.iter_mut().flatten();
+        signal.for_each(|value| *value += std * normal.draw());
+    }
+    let nominal = [
+        placed("mass_error", Location::Mass("block".into()), &[gain]),
+        placed("stiffness_error", between("block", "ground"), &[gain]),
+        placed("damping_error", between("block", "ground"), &[gain]),
+        placed("input_gain", Location::Input("u".into()), &[gain]),
+    ];
+    let search = FitOptions {
+        keep_nuisance: true,
+        most_steps: 10,
+        converged: 0.1,
+        ..FitOptions::white(2)
+    };
+    let start = start(
+        vec![placed("sensor_gain", sensor, &[1.0])],
+        nominal.to_vec(),
+        &[0.0, 0.0],
+    );
+    let fit = fit(&problem(&model, run), &start, &search).unwrap();
+    let found = fit.estimate.effects[0].values[0];
+    // As well as the model states its parameters, half of 2 % each.
+    assert!((found / gain - 1.0).abs() < 0.02, "{found}");
+}
+
+/// The levels of an actuator in newtons are not those of one in volts: what is known of them before any data goes with the input.
+#[test]
+fn verify_a_place_in_an_input_has_the_range_of_the_input() {
+    let model = model(OSCILLATOR);
+    let run = truth(&model, &[], drive(0.01, 400, 2e4), 0.01, &[0.0, 0.0]);
+    let low = run.inputs[0].iter().copied().fold(f64::INFINITY, f64::min);
+    let high = run.inputs[0]
+        .iter()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let problem = problem(&model, run);
+    let fit = fit_initial_states(&problem, &[], &FitOptions::white(1)).unwrap();
+    let at = Location::Input("u".into());
+    let scale = problem.site_scale(&fit, &at).unwrap();
+    assert_eq!(scale.signal_range, [low, high]);
+}

@@ -96,13 +96,8 @@ impl Effect for TabulatedCurve {
     }
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let range = if self.is_input {
-            scale.input_range()
-        } else {
-            scale.signal_range
-        };
         let mut start = vec![START * scale.signal; ALL];
-        start[..SHAPES].copy_from_slice(&widened(range));
+        start[..SHAPES].copy_from_slice(&widened(scale.signal_range));
         vec![start]
     }
 

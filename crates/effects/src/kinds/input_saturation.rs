@@ -65,7 +65,7 @@ impl Effect for InputSaturation {
 
     /// On both sides. A limit that is not reached is moved out of reach by the fit.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let [low, high] = scale.input_range();
+        let [low, high] = scale.signal_range;
         let inside = |share: f64| share * (high - low);
         let starts = INSIDE.map(|share| vec![high - inside(share), low + inside(share)]);
         starts.to_vec()
