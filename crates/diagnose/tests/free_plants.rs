@@ -137,3 +137,41 @@ between = ["gear", "base"]
     let outcome = diagnosed_as(&model, &truth, &[], 2e-3);
     assert_eq!(named(&outcome), [("sensor_drift".to_string(), at)]);
 }
+
+/// A pendulum hangs from a heavy frame that swings on and hardly dies away: the beat of its free decay is told as the frame, though a force
+/// at one frequency leaves a few per cent of the gap.
+#[test]
+fn verify_the_beat_of_a_free_decay_is_a_hidden_mode() {
+    let text = r#"schema = "simgap-model/1"
+name = "pendulum"
+[[mass]]
+name = "base"
+value = 2.0
+[[spring]]
+name = "k"
+between = ["base", "ground"]
+stiffness = 808.0
+[[damper]]
+name = "c"
+between = ["base", "ground"]
+damping = 0.5
+[[output]]
+channel = "x"
+kind = "displacement"
+at = "base"
+"#;
+    let frame = [24_250.0, 47.6, 3e-4, 0.01, 0.0];
+    let frame = [placed("flexible_support", ground(), &frame)];
+    let outcome = diagnosed_as(&Model::from_toml(text).unwrap(), &frame, &[], 8e-3);
+    let verdict = &outcome.diagnosis.verdict;
+    let first = verdict
+        .effects
+        .first()
+        .unwrap_or_else(|| panic!("{verdict:?}"));
+    assert_eq!(first.kind, "flexible_support", "{verdict:?}");
+    assert!(
+        outcome.diagnosis.gap.corrected < 0.02,
+        "{:?}",
+        outcome.diagnosis.gap
+    );
+}

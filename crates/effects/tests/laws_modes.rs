@@ -237,3 +237,25 @@ fn verify_a_stiffness_that_hardly_moves_does_not_swing() {
     assert!(keeps(20.0) && keeps(1.01));
     assert!(!keeps(0.9));
 }
+
+/// What rings on through a record looks like a force at one frequency; the mass or the support that it grows into rings there.
+#[test]
+fn verify_a_force_at_one_frequency_grows_into_a_mode_there() {
+    let freq = 3.7;
+    let grown = |kind: &str| {
+        let modes = effect(kind).grown_from("harmonic_force", &[0.2, freq, 1.0], &scale());
+        assert!(!modes.is_empty(), "{kind}");
+        modes
+    };
+    // So heavy that the carriage hardly moves them.
+    let heavy = grown("attached_mode").pop().unwrap();
+    assert_eq!(heavy[1], freq);
+    for values in grown("flexible_support") {
+        let [stiffness, mass] = [values[0], values[1]];
+        let own = ((stiffness + scale().stiffness_n_per_m) / mass).sqrt() / TAU;
+        assert!((own / freq - 1.0).abs() < ROUNDING, "{values:?}");
+        // It dies away by a factor of e over the longest record.
+        let ages = values[2] * TAU * freq * scale().duration_s;
+        assert!((ages - 1.0).abs() < ROUNDING, "{values:?}");
+    }
+}

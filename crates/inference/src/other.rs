@@ -7,14 +7,15 @@
 //! u is what the best set leaves of the gap of the model as given ([`Gap`]), u_f what a free law at one place leaves. What is
 //! left is no proof of another *main* cause, since no model is exact: a gap counts as few independent observations, m for a
 //! cause of any kind that would explain all of it, n where a law was found that does; shares below r ([`RELEVANT_SHARE`]) do
-//! not count. B is the odds of one cause behind two effects of the best set whose values agree ([`Coincidence`]), at least 1.
+//! not count. B is the odds of one cause behind two effects of the best set whose values agree ([`Coincidence`]), at least 1, and 1 where
+//! the set leaves no share that counts without them.
 
 use rayon::prelude::*;
 use simgap_effects::{Effect, Placed, free_laws, sites};
 use simgap_estimate::{Candidate, EstimateError, Fit, linearise_at, score};
 use simgap_model::Location;
 
-use crate::candidate_model::{CandidateModel, add};
+use crate::candidate_model::{CandidateModel, add, remove};
 use crate::coincidence::{Coincidence, coincidence};
 use crate::gap::{Gap, RELEVANT_SHARE};
 use crate::search::Search;
@@ -71,7 +72,10 @@ pub fn other(
         let of_law = law.left.powi(2) + relevant;
         log_odds += 0.5 * FOUND_LAW * (own / of_law).ln().max(0.0);
     }
-    let coincidence = coincidence(best, &search.space);
+    let coincidence = match coincidence(best, &search.space) {
+        Some(found) if is_of_the_main_cause(&found, search, best, gap)? => Some(found),
+        _ => None,
+    };
     log_odds += coincidence.as_ref().map_or(0.0, |found| found.log_odds);
     Ok(Other {
         coincidence,
@@ -79,6 +83,25 @@ pub fn other(
         left,
         law,
     })
+}
+
+/// Whether values that agree are those of what closes the gap: the set without these effects leaves a share of it that counts.
+fn is_of_the_main_cause(
+    found: &Coincidence,
+    search: &Search<'_>,
+    best: &CandidateModel,
+    gap: &Gap,
+) -> Result<bool, EstimateError> {
+    let mut start = best.fit.estimate.clone();
+    for i in (0..best.effects().len()).rev() {
+        let placed = &best.effects()[i];
+        let mut effects = found.effects.iter();
+        if effects.any(|(kind, at)| *kind == placed.effect.kind() && *at == placed.at) {
+            start = remove(&start, i, search.nominal);
+        }
+    }
+    let without = search.fit(&start)?;
+    Ok(gap.left(&without.fit.variance) > RELEVANT_SHARE)
 }
 
 fn best_law(

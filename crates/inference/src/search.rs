@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! wrong nominal parameters: those that are off once all are re-estimated
-//! single effects: by score; from many values; dynamics of parameters
+//! single effects: by score; from many values; dynamics of parameters; what the best one grows into
 //! effects beside nominal parameters that are re-estimated
 //! pairs, sets of three: from the best sets so far, by score and from many values
 //! stretches of the records, each with a start of its own (multiple shooting)
@@ -261,6 +261,12 @@ impl<'a> Search<'a> {
         }
         pool.extend(self.fit_dynamics_of_parameters(base, &pool, &linear));
         rank(&mut pool);
+        // What leaves little may still be the shadow of another cause.
+        if let Some(single) = pool.first().filter(|set| set.effects().len() == 1) {
+            let grown = self.grow(single, 0)?;
+            pool.extend(grown);
+            rank(&mut pool);
+        }
         if let Some(recalibrated) = recalibrated
             && !self.is_settled(&pool, base)?
         {

@@ -106,8 +106,14 @@ pub(crate) fn record(
         .map(|n| drive(n as f64 * step, number as f64))
         .collect();
     // All inputs but the first are silent.
-    let silent = model.inputs.iter().skip(1);
-    let inputs = std::iter::once(input.clone()).chain(silent.map(|_| vec![0.0; fine]));
+    let inputs = model.inputs.iter().enumerate();
+    let inputs = inputs.map(|(k, _)| {
+        if k == 0 {
+            input.clone()
+        } else {
+            vec![0.0; fine]
+        }
+    });
     let run = Run {
         name: "machine".into(),
         start_s: 0.0,

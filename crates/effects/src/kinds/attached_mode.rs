@@ -27,6 +27,8 @@ const NAME: &str = "(attached)";
 
 /// Natural frequencies tried at the most.
 const MOST_OCTAVES: i32 = 10;
+/// Masses over that of the host that a force at one frequency may come from.
+const HEAVIER: [f64; 3] = [0.1, 1.0, 10.0];
 
 pub(super) fn unused_name(model: &Model, stem: &str) -> String {
     let taken = |name: &str| model.masses.iter().any(|mass| mass.name == name);
@@ -178,10 +180,11 @@ impl Effect for AttachedMode {
     }
 
     fn resembles(&self) -> &'static [&'static str] {
-        &["flexible_support"]
+        &["flexible_support", "harmonic_force"]
     }
 
-    /// A factor q on the host is a mass m (q − 1) that moves with it. A support of stiffness kₛ and mass mₛ behind
+    /// A factor q on the host is a mass m (q − 1) that moves with it. A force at one frequency is a mass that rings on through the
+    /// longest record, T: ζ = 1 / (ω T). A support of stiffness kₛ and mass mₛ behind
     /// a spring k is a softer spring and a hidden mass: kₐ = k² / (k + kₛ), ω² = (k + kₛ) / mₛ.
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         if kind == "flexible_support" {
@@ -192,6 +195,12 @@ impl Effect for AttachedMode {
             let start = vec![mass, omega / TAU, damping_ratio, 0.0, 0.0];
             let is_finite = start.iter().all(|value| value.is_finite());
             return if is_finite { vec![start] } else { vec![] };
+        }
+        if kind == "harmonic_force" {
+            let freq = values[1];
+            let ratio = 1.0 / (TAU * freq * scale.duration_s);
+            let masses = HEAVIER.map(|heavier| heavier * scale.mass_kg);
+            return masses.map(|mass| vec![mass, freq, ratio, 0.0, 0.0]).into();
         }
         let added = (values[0] - 1.0) * scale.mass_kg;
         if !(added > 0.0 && added.is_finite()) {

@@ -23,6 +23,8 @@ pub(crate) struct FlexibleSupport;
 
 /// Name of the mass of the support.
 const NAME: &str = "(support)";
+/// Stiffnesses over that of the spring on it that a support is looked for with.
+const STIFFER: [f64; 2] = [3.0, 15.0];
 
 fn stand(model: &mut Model, at: &Location, [mass, stiffness, damping_ratio]: [f64; 3]) {
     let Location::Between(pair) = at else {
@@ -125,7 +127,7 @@ impl Effect for FlexibleSupport {
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         let mut starts = vec![];
-        for stiffer in [3.0, 15.0] {
+        for stiffer in STIFFER {
             let stiffness = stiffer * scale.stiffness_n_per_m;
             for heavier in [0.1, 1.0] {
                 starts.push(vec![stiffness, heavier * scale.mass_kg, 0.05, 0.0, 0.0]);
@@ -133,7 +135,10 @@ impl Effect for FlexibleSupport {
             // A support whose own mode is at a line that the model leaves.
             for freq in scale.lines_hz.into_iter().take(2).filter(|f| *f > 0.0) {
                 let mass = (stiffness + scale.stiffness_n_per_m) / (TAU * freq).powi(2);
-                starts.push(vec![stiffness, mass, 0.05, 0.0, 0.0]);
+                // It dies away at once, or rings on through the longest record.
+                for ratio in [0.05, 1.0 / (TAU * freq * scale.duration_s)] {
+                    starts.push(vec![stiffness, mass, ratio, 0.0, 0.0]);
+                }
             }
         }
         starts
@@ -144,12 +149,13 @@ impl Effect for FlexibleSupport {
     }
 
     fn resembles(&self) -> &'static [&'static str] {
-        &["attached_mode"]
+        &["attached_mode", "harmonic_force"]
     }
 
     /// A massless support of stiffness k q/(1 − q) behind a spring and a damper is a factor q on the
     /// spring and, well below where the damper is stiffer than the spring, q² on the damper. A hidden mass of
-    /// stiffness kₐ < k on the host is a support and a stiffer spring: kₛ = k² / kₐ − k, mₛ = (k + kₛ) / ω².
+    /// stiffness kₐ < k on the host is a support and a stiffer spring: kₛ = k² / kₐ − k, mₛ = (k + kₛ) / ω². A force at one
+    /// frequency is a support that rings on through the longest record, T: ζ = 1 / (ω T).
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         if kind == "attached_mode" {
             let (own, omega) = (scale.stiffness_n_per_m, TAU * values[1]);
@@ -166,6 +172,16 @@ impl Effect for FlexibleSupport {
                 0.0,
                 0.0,
             ]];
+        }
+        if kind == "harmonic_force" {
+            let omega = TAU * values[1];
+            let ratio = 1.0 / (omega * scale.duration_s);
+            let stiffnesses = STIFFER.map(|stiffer| stiffer * scale.stiffness_n_per_m);
+            let support = |stiffness: f64| {
+                let mass = (stiffness + scale.stiffness_n_per_m) / (omega * omega);
+                vec![stiffness, mass, ratio, 0.0, 0.0]
+            };
+            return stiffnesses.map(support).into();
         }
         let factor = match kind {
             "damping_error" => values[0].sqrt(),

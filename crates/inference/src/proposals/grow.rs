@@ -111,13 +111,14 @@ impl Search<'_> {
                     return None;
                 }
                 let mut smaller = effect.contains().iter().chain(effect.turns_into());
-                if candidate.at == old.at && smaller.any(|known| *known == kind) {
-                    return Some((candidate, *scale));
+                let is_alike = effect.resembles().contains(&kind);
+                if candidate.at == old.at {
+                    let grows = is_alike || smaller.any(|known| *known == kind);
+                    return grows.then_some((candidate, *scale));
                 }
                 // Of a mass and its spring to the ground, the spring has the sizes.
                 let spring = spring_to_ground(&candidate.at, &old.at)?;
-                let resembles = effect.resembles().contains(&kind);
-                Some((candidate, self.space.scale_at(spring)?)).filter(|_| resembles)
+                Some((candidate, self.space.scale_at(spring)?)).filter(|_| is_alike)
             });
         larger
             .flat_map(|(candidate, scale)| {
