@@ -259,6 +259,9 @@ pub struct NamedParameter {
     pub value: f64,
     /// 95 % interval.
     pub ci95: [f64; 2],
+    /// Unit, where the name does not hold it: of a law of the model file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
 }
 
 /// What the data cannot tell from a named effect.

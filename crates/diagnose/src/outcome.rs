@@ -35,6 +35,7 @@ pub(crate) fn nominal_estimates(problem: &Problem, fit: &Fit) -> Vec<NominalEsti
                     name: parameter.name.to_string(),
                     value: interval.value,
                     ci95: interval.ci95,
+                    unit: None,
                 },
                 prior_std: problem.stated_std(placed),
             })

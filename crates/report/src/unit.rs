@@ -43,6 +43,24 @@ pub(crate) fn quantity(name: &str) -> Quantity {
     }
 }
 
+/// What an estimated value is, and its unit: as stated beside it, else by its name.
+pub(crate) fn quantity_of(parameter: &NamedParameter) -> Quantity {
+    let Some(unit) = &parameter.unit else {
+        return quantity(&parameter.name);
+    };
+    let powers = [("^2", "²"), ("^3", "³"), ("^4", "⁴"), ("^5", "⁵")];
+    let unit = match unit.trim() {
+        "1" => String::new(),
+        unit => powers
+            .iter()
+            .fold(unit.to_owned(), |unit, (from, to)| unit.replace(from, to)),
+    };
+    Quantity {
+        words: parameter.name.replace('_', " "),
+        unit,
+    }
+}
+
 /// `n` is N, `m3` is m³; `None` for a word that is no unit.
 fn unit_word(part: &str) -> Option<String> {
     let (letters, power) = match part.strip_suffix(['2', '3', '4', '5']) {
@@ -144,7 +162,7 @@ fn unit_of_channel(kind: &str, parameter: &str, channel_unit: &str) -> Option<St
 /// The estimate of a parameter of such an effect, to the two digits that its interval can carry. `channel_unit` is the unit
 /// of the channel on which the effect acts, empty for an effect that acts on none.
 pub(crate) fn estimate(kind: &str, parameter: &NamedParameter, channel_unit: &str) -> Estimate {
-    let Quantity { words, unit } = quantity(&parameter.name);
+    let Quantity { words, unit } = quantity_of(parameter);
     let unit = unit_of_channel(kind, &parameter.name, channel_unit).unwrap_or(unit);
     let [low, high] = parameter.ci95;
     let Prefixed { unit, factor } = prefixed(&unit, parameter.value.abs());
@@ -238,6 +256,7 @@ mod tests {
             name: name.to_owned(),
             value,
             ci95,
+            unit: None,
         };
         let e = estimate("coulomb_friction", &parameter, "");
         (e.value, e.interval)
@@ -250,7 +269,12 @@ mod tests {
             let ci95 = [low, high];
             estimate(
                 "coulomb_friction",
-                &NamedParameter { name, value, ci95 },
+                &NamedParameter {
+                    name,
+                    value,
+                    ci95,
+                    unit: None,
+                },
                 "",
             )
             .plus_minus
@@ -270,7 +294,13 @@ mod tests {
         let shown = |kind: &str, name: &str, value: f64, unit: &str| {
             let name = name.to_owned();
             let ci95 = [0.9 * value, 1.1 * value];
-            estimate(kind, &NamedParameter { name, value, ci95 }, unit).value
+            let parameter = NamedParameter {
+                name,
+                value,
+                ci95,
+                unit: None,
+            };
+            estimate(kind, &parameter, unit).value
         };
         assert_eq!(shown("sensor_bias", "bias", 0.0012, "m"), "1.20\u{a0}mm");
         assert_eq!(shown("sensor_bias", "bias", 0.0012, ""), "0.00120");

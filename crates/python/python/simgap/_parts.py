@@ -27,12 +27,14 @@ def _number(value: float | None) -> float:
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """An estimated value, in the unit at the end of its name."""
+    """An estimated value, in the unit at the end of its name, or in ``unit`` where that is stated."""
 
     name: str
     value: float
     #: 95 % interval: lower and upper end; nan where the data do not bound it.
     ci95: tuple[float, float]
+    #: Unit, where the name does not hold it: of a law of the model file.
+    unit: str | None = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,7 +67,7 @@ class Effect:
         for one in values["parameters"]:
             low, high = (_number(end) for end in one["ci95"])
             value = _number(one["value"])
-            parameters[one["name"]] = Parameter(one["name"], value, (low, high))
+            parameters[one["name"]] = Parameter(one["name"], value, (low, high), one.get("unit"))
         rivals = [made(Rival, one) for one in values["indistinguishable"]]
         return made(cls, {**values, "parameters": parameters, "indistinguishable": rivals})
 

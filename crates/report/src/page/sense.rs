@@ -2,12 +2,12 @@
 //! the motion of the check records, against the time between samples.
 
 use simgap_diagnose::{NamedEffect, NamedParameter, PlaceMotion};
-use simgap_effects::{Parameter, find};
+use simgap_effects::{Parameter, find, find_of};
 use simgap_model::{Location, same_pair};
 
 use super::ReportInput;
 use crate::number::{percent, significant, trimmed};
-use crate::unit::{Prefixed, prefixed, quantity};
+use crate::unit::{Prefixed, prefixed, quantity, quantity_of};
 
 /// What the machine has and does at the place of an effect, SI; zero where there is none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -29,8 +29,9 @@ pub(super) fn sense(
     parameter: &NamedParameter,
     input: &ReportInput<'_>,
 ) -> String {
-    let law =
-        find(&effect.kind).and_then(|e| e.parameters().iter().find(|p| p.name == parameter.name));
+    let model = input.nominal.or(input.corrected);
+    let known = model.map_or_else(|| find(&effect.kind), |model| find_of(model, &effect.kind));
+    let law = known.and_then(|e| e.parameters().iter().find(|p| p.name == parameter.name));
     let mut out = Vec::new();
     let value = parameter.value;
     if parameter.name.ends_with("factor") && value.is_finite() {
@@ -91,7 +92,7 @@ fn compared(parameter: &NamedParameter, at: &Location, around: &Surroundings) ->
     let x = around.largest_displacement;
     let v = around.largest_velocity;
     let on_machine = matches!(at, Location::Between(_) | Location::Mass(_));
-    let (part, whole, of) = match quantity(&parameter.name).unit.as_str() {
+    let (part, whole, of) = match quantity_of(parameter).unit.as_str() {
         "N" if on_machine => (
             size,
             around.largest_force,
@@ -195,6 +196,7 @@ mod tests {
             name: name.into(),
             value,
             ci95: [0.9 * value, 1.1 * value],
+            unit: None,
         };
         compared(&parameter, at, &around)
     }

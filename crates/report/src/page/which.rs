@@ -9,7 +9,7 @@ use super::tables::{list, table};
 use crate::chart::{Bar, BarChart, Role};
 use crate::markup::Html;
 use crate::number::{percent, ratio};
-use crate::unit::quantity;
+use crate::unit::quantity_of;
 use crate::wording::{SURE, effect_at, kind, place, plain, sentence};
 
 /// Candidates of the picture.
@@ -155,7 +155,7 @@ fn against(diagnosis: &Diagnosis, effect: &NamedEffect) -> Vec<String> {
         if !(p.ci95[0].is_finite() && p.ci95[1].is_finite()) {
             out.push(format!(
                 "these records do not bound its {}",
-                quantity(&p.name).words
+                quantity_of(p).words
             ));
         }
     }
