@@ -78,8 +78,17 @@ fn explained(effect: &dyn Effect) -> String {
     line("what it does", effect.summary());
     line("belongs to", family_words(effect.family()));
     line("law", effect.equation());
-    let (where_, key) = (effect.site().words(), effect.site().place());
-    line("can sit at", &format!("{where_}: {key}"));
+    let stated: Vec<String> = effect
+        .stated_places()
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    if stated.is_empty() {
+        let (where_, key) = (effect.site().words(), effect.site().place());
+        line("can sit at", &format!("{where_}: {key}"));
+    } else {
+        line("can sit", &stated.join(", "));
+    }
     line("shown best by", effect.experiment());
     for (kind, because) in confused(effect) {
         line("confused with", &format!("{kind}: {because}"));

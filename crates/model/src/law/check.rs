@@ -159,7 +159,9 @@ impl LawParameter {
             }
         }
         let [lower, upper] = self.range();
-        if !(lower < upper) {
+        // Not a number is below nothing.
+        let is_ordered = lower < upper;
+        if !is_ordered {
             return Err(value("lower", lower, "a number below upper"));
         }
         let is_bounded = lower.is_finite() && upper.is_finite();
