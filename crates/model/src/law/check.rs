@@ -1,6 +1,7 @@
 //! What makes a law one that can be evaluated.
 
 use super::expression::FUNCTIONS;
+use super::parse::parse;
 use super::text::BadExpression;
 use super::{Expression, Law, LawParameter};
 use crate::refuse::{check_uncertainty, item, unique};
@@ -37,7 +38,7 @@ impl Law {
 
     pub(super) fn parsed(&self) -> Result<Expression, BadExpression> {
         let names = self.parameters.iter().map(|one| one.name.as_str());
-        Expression::parse(&self.force, &names.collect::<Vec<_>>())
+        parse(&self.force, &names.collect::<Vec<_>>())
     }
 
     /// Table and item, as messages name it.

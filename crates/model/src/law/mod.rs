@@ -3,6 +3,7 @@
 mod check;
 mod expression;
 pub(crate) mod file;
+mod parse;
 mod text;
 
 use serde::{Deserialize, Serialize};
