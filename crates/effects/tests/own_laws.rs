@@ -198,3 +198,23 @@ fn verify_terms_of_a_loss_are_known() {
     assert!(!is_loss("c * d^3", &["c"]));
     assert!(!is_loss("c * tanh(v / w)", &["c", "w"]));
 }
+
+/// A model that is put together in code may never have been checked.
+#[test]
+fn verify_a_law_that_was_not_checked_is_refused() {
+    let mut c = LawParameter::of_size("c", "N", 20.0);
+    c.lower = Some(f64::NAN);
+    for law in [
+        law("grease", "c * v", vec![c]),
+        law(
+            "grease",
+            "c * w",
+            vec![LawParameter::of_size("c", "N", 20.0)],
+        ),
+    ] {
+        let mut model = with(vec![]);
+        model.laws = vec![law];
+        assert!(own_laws(&model).is_err());
+        assert_eq!(catalogue_of(&model).len(), catalogue().len());
+    }
+}

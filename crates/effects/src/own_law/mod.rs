@@ -111,16 +111,27 @@ fn kept(text: &str) -> &'static str {
     Box::leak(text.to_owned().into_boxed_str())
 }
 
-/// What stands for a parameter where nothing else is known, at a share of its range.
-fn typical(parameter: &LawParameter, share: f64) -> f64 {
-    match parameter.known() {
-        Known::Usual(usual) => usual,
-        Known::Value { mean, .. } => mean,
+/// The value of a parameter `spreads` standard deviations of its prior from its usual value, not zero where that can be.
+fn value(known: Known, [lower, upper]: [f64; 2], spreads: f64) -> f64 {
+    let value = match known {
+        Known::Usual(usual) => usual * (SIZE_LOG_STD * spreads).exp(),
+        Known::Value { mean, std } => mean + spreads * std,
         Known::Range => {
-            let [lower, upper] = parameter.range();
-            lower + share * (upper - lower)
+            let share = match spreads {
+                s if s < 0.0 => WITHIN[1],
+                s if s > 0.0 => WITHIN[2],
+                _ => WITHIN[0],
+            };
+            let value = lower + share * (upper - lower);
+            // A fit takes the scale of a value from where it starts.
+            if value == 0.0 {
+                0.25 * (upper - lower)
+            } else {
+                value
+            }
         }
-    }
+    };
+    value.clamp(lower, upper)
 }
 
 impl OwnLaw {
@@ -139,7 +150,7 @@ impl OwnLaw {
         }
         let count = law.parameters.len();
         if count > MOST_PARAMETERS {
-            return Err(of_law(format!("{count} parameters"), "at the most 12"));
+            return Err(of_law(format!("{count} parameters"), "at the most 8"));
         }
         let expression = law.expression()?;
         let sizes = sizes(&expression, count).ok_or_else(|| {
@@ -149,7 +160,9 @@ impl OwnLaw {
             )
         })?;
         let program = Program::of(&expression);
-        let usual: Vec<f64> = law.parameters.iter().map(|one| typical(one, 0.5)).collect();
+        let usual = law.parameters.iter();
+        let usual = usual.map(|one| value(one.known(), one.range(), 0.0));
+        let usual: Vec<f64> = usual.collect();
         for displacement in ABOUT_REST {
             for velocity in ABOUT_REST {
                 let force = program.force(&usual, [displacement, velocity, 0.0]);
@@ -191,28 +204,9 @@ impl OwnLaw {
         })
     }
 
-    /// The value of a parameter `spreads` standard deviations of its prior from its usual value, not zero where that can be.
     fn value(&self, place: usize, spreads: f64) -> f64 {
         let Parameter { lower, upper, .. } = self.parameters[place];
-        let value = match self.known[place] {
-            Known::Usual(usual) => usual * (SIZE_LOG_STD * spreads).exp(),
-            Known::Value { mean, std } => mean + spreads * std,
-            Known::Range => {
-                let share = match spreads {
-                    s if s < 0.0 => WITHIN[1],
-                    s if s > 0.0 => WITHIN[2],
-                    _ => WITHIN[0],
-                };
-                let value = lower + share * (upper - lower);
-                // A fit takes the scale of a value from where it starts.
-                if value == 0.0 {
-                    0.25 * (upper - lower)
-                } else {
-                    value
-                }
-            }
-        };
-        value.clamp(lower, upper)
+        value(self.known[place], [lower, upper], spreads)
     }
 
     /// Values whose force is visible at a place: the sizes of which no value is stated are scaled for that.

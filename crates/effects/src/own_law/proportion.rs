@@ -11,8 +11,8 @@ use simgap_model::{Expression, Function, Operation, Symbol};
 
 use super::program::reads;
 
-/// Parameters whose sets are looked through.
-pub(super) const MOST_PARAMETERS: usize = 12;
+/// Parameters of a law: their sets are looked through one by one.
+pub(super) const MOST_PARAMETERS: usize = 8;
 
 /// Places of the sizes of a force: the smallest set s of (1), of these the one that is listed first; `None` where the force is in
 /// proportion to no set.

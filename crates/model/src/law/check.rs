@@ -27,8 +27,10 @@ impl Law {
     /// The expression of the force as a tree; its parameters are places in [`Law::parameters`].
     ///
     /// # Errors
-    /// [`ModelError::Shape`] with the character of the text, from 1, at which it is no expression of the parameters.
+    /// [`ModelError::Shape`] with the character of the text, from 1, at which it is no expression of the parameters; other
+    /// variants for names, units and priors of parameters that cannot be.
     pub fn expression(&self) -> Result<Expression, ModelError> {
+        self.check_names()?;
         self.parsed().map_err(|bad| ModelError::Shape {
             place: format!("{}: force, character {}", self.place(), bad.character),
             found: bad.found,
@@ -78,7 +80,6 @@ impl Law {
     }
 
     fn check(&self, model: &Model) -> Result<(), ModelError> {
-        self.check_names()?;
         self.expression()?;
         self.between
             .iter()
