@@ -7,5 +7,6 @@ pub mod generated;
 mod mold_records;
 pub mod reproduce;
 pub mod rigs;
+mod slide_records;
 pub mod tidy;
 pub mod tutorial_records;

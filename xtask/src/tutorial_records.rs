@@ -1,5 +1,5 @@
 //! `cargo xtask tutorial-records [--check]`: the logger files that `docs/tutorial.md` works with, and those of
-//! `docs/hydraulics.md` (`mold_records`).
+//! `docs/hydraulics.md` (`mold_records`) and `docs/own-laws.md` (`slide_records`).
 //!
 //! A table on leaf springs is simulated with an effect that the tutorial's model lacks, and written
 //! as a data logger would: lines before the header, a row of units, semicolons, decimal commas, a
@@ -16,7 +16,7 @@ use simgap_simulate::{Run, Simulator};
 
 use crate::demo_records::{DemoError, Noise};
 use crate::generated::workspace_root;
-use crate::mold_records;
+use crate::{mold_records, slide_records};
 
 /// Where the files are kept, from the root of the workspace.
 pub const FOLDER: &str = "fixtures/tutorial";
@@ -87,7 +87,9 @@ fn all_files() -> Result<Vec<(&'static str, &'static str, String)>, DemoError> {
         .map(|(name, text)| (FOLDER, name, text));
     let mold = mold_records::files()?.into_iter();
     let mold = mold.map(|(name, text)| (mold_records::FOLDER, name, text));
-    Ok(table.chain(mold).collect())
+    let slide = slide_records::files()?.into_iter();
+    let slide = slide.map(|(name, text)| (slide_records::FOLDER, name, text));
+    Ok(table.chain(mold).chain(slide).collect())
 }
 
 fn files() -> Result<Vec<(&'static str, String)>, DemoError> {

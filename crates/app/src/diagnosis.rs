@@ -76,14 +76,14 @@ pub fn distinct_stems<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Resul
     Ok(())
 }
 
-/// Refuses kinds to withhold that the catalogue has not.
+/// Refuses kinds to withhold that neither the catalogue nor a law of the model is.
 ///
 /// # Errors
 /// [`AppError::UnknownKind`].
-pub fn known_kinds(withheld: &[String]) -> Result<(), AppError> {
+pub fn known_kinds(withheld: &[String], model: Option<&Model>) -> Result<(), AppError> {
     withheld
         .iter()
-        .try_for_each(|kind| effects::known("--withhold: ", kind).map(drop))
+        .try_for_each(|kind| effects::known("--withhold: ", kind, model).map(drop))
 }
 
 /// Whether the quality of single columns does not say the same.

@@ -1,7 +1,8 @@
 //! The catalogue, from its own entries.
 
 use serde::Serialize;
-use simgap_effects::{Effect, Family, catalogue, find};
+use simgap_effects::{Effect, Family, catalogue, catalogue_of};
+use simgap_model::Model;
 
 use crate::AppError;
 
@@ -10,16 +11,28 @@ const SCHEMA: &str = "simgap-effects/1";
 /// Kinds that are offered for one that is not known.
 const OFFERED: usize = 3;
 
+/// The kinds that are known: the catalogue, and the laws of a model if there is one.
+#[must_use]
+pub fn kinds(model: Option<&Model>) -> Vec<&'static dyn Effect> {
+    model.map_or_else(|| catalogue().to_vec(), catalogue_of)
+}
+
 /// The entry of a kind, or the kinds that look like it; `option` stands before the message.
 ///
 /// # Errors
 /// [`AppError::UnknownKind`].
-pub fn known(option: &'static str, kind: &str) -> Result<&'static dyn Effect, AppError> {
-    find(kind).ok_or_else(|| unknown(option, kind))
+pub fn known(
+    option: &'static str,
+    kind: &str,
+    model: Option<&Model>,
+) -> Result<&'static dyn Effect, AppError> {
+    let all = kinds(model);
+    let found = all.iter().find(|effect| effect.kind() == kind);
+    found.copied().ok_or_else(|| unknown(option, kind, &all))
 }
 
-fn unknown(option: &'static str, kind: &str) -> AppError {
-    let kinds = catalogue().iter().map(|effect| effect.kind());
+fn unknown(option: &'static str, kind: &str, all: &[&'static dyn Effect]) -> AppError {
+    let kinds = all.iter().map(|effect| effect.kind());
     let mut near: Vec<(f64, &str)> = kinds.map(|known| (likeness(kind, known), known)).collect();
     near.sort_by(|a, b| b.0.total_cmp(&a.0));
     let near: Vec<&str> = near.iter().take(OFFERED).map(|(_, kind)| *kind).collect();

@@ -31,7 +31,7 @@ pub enum AppError {
         /// What is wrong.
         error: ModelError,
     },
-    /// An effect of a model file cannot be used.
+    /// An effect or a law of a model file cannot be used.
     #[error("{}: {error}", .path.display())]
     Effect {
         /// The file.

@@ -4,7 +4,7 @@ use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use simgap_effects::Placed;
+use simgap_effects::{Placed, own_laws};
 use simgap_model::{Location, Model};
 use simgap_record::{
     ChannelMap, MapFault, Mend, Quantity, ReadOptions, Reading, Record, RecordError, read_file,
@@ -99,11 +99,13 @@ pub fn model_of(text: &str, path: &Path) -> Result<Model, AppError> {
         path: path.into(),
         error,
     })?;
+    let refused = |error| AppError::Effect {
+        path: path.into(),
+        error,
+    };
+    own_laws(&model).map_err(refused)?;
     for entry in &model.effects {
-        Placed::from_entry(&model, entry).map_err(|error| AppError::Effect {
-            path: path.into(),
-            error,
-        })?;
+        Placed::from_entry(&model, entry).map_err(refused)?;
     }
     Ok(model)
 }

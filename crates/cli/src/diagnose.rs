@@ -23,8 +23,8 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         &args.check
     };
     distinct_stems(judged)?;
-    known_kinds(&args.withhold)?;
     let model = input::model(&args.model)?;
+    known_kinds(&args.withhold, Some(&model))?;
     let options = args.records.options();
     let read = |paths: &[PathBuf]| {
         let inputs = paths

@@ -1,8 +1,9 @@
 //! `simgap effects`: the catalogue, from its own entries.
 
-use simgap_app::effects::{Catalogue, confused, known};
+use simgap_app::effects::{Catalogue, confused, kinds, known};
+use simgap_app::input;
 use simgap_app::json;
-use simgap_effects::{Effect, Family, Parameter, catalogue};
+use simgap_effects::{Effect, Family, Parameter};
 
 use crate::args::{EffectsArgs, Format};
 use crate::error::CliError;
@@ -13,9 +14,10 @@ use crate::text::{FAINT, STRONG, named, styled, table};
 const INDENT: usize = 17;
 
 pub(crate) fn run(args: &EffectsArgs) -> Result<(), CliError> {
+    let model = args.model.as_deref().map(input::model).transpose()?;
     let entries: Vec<&dyn Effect> = match &args.kind {
-        None => catalogue().to_vec(),
-        Some(kind) => vec![known("", kind)?],
+        None => kinds(model.as_ref()),
+        Some(kind) => vec![known("", kind, model.as_ref())?],
     };
     match (args.format, &args.kind) {
         (Format::Json, _) => {
@@ -26,14 +28,14 @@ pub(crate) fn run(args: &EffectsArgs) -> Result<(), CliError> {
                 .iter()
                 .try_for_each(|effect| say(&explained(*effect)))?;
         }
-        (Format::Human, None) => say(&list())?,
+        (Format::Human, None) => say(&list(&entries))?,
     }
     Ok(())
 }
 
 /// A line for each kind.
-fn list() -> String {
-    let widest = catalogue().iter().map(|effect| effect.kind().len()).max();
+fn list(entries: &[&dyn Effect]) -> String {
+    let widest = entries.iter().map(|effect| effect.kind().len()).max();
     let widest = widest.unwrap_or(0);
     let mut text = String::new();
     for family in [
@@ -44,7 +46,7 @@ fn list() -> String {
     ] {
         text.push_str(&styled(STRONG, &heading(family)));
         text.push('\n');
-        for effect in catalogue().iter().filter(|e| e.family() == family) {
+        for effect in entries.iter().filter(|e| e.family() == family) {
             let pad = " ".repeat(widest - effect.kind().len());
             text.push_str(&format!("  {}{pad}  {}\n", effect.kind(), effect.summary()));
         }
@@ -76,8 +78,17 @@ fn explained(effect: &dyn Effect) -> String {
     line("what it does", effect.summary());
     line("belongs to", family_words(effect.family()));
     line("law", effect.equation());
-    let (where_, key) = (effect.site().words(), effect.site().place());
-    line("can sit at", &format!("{where_}: {key}"));
+    let stated: Vec<String> = effect
+        .stated_places()
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    if stated.is_empty() {
+        let (where_, key) = (effect.site().words(), effect.site().place());
+        line("can sit at", &format!("{where_}: {key}"));
+    } else {
+        line("can sit", &stated.join(", "));
+    }
     line("shown best by", effect.experiment());
     for (kind, because) in confused(effect) {
         line("confused with", &format!("{kind}: {because}"));

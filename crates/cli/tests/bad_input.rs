@@ -114,6 +114,18 @@ fn regress_model_files() {
             "unknown table",
             format!("{MODEL}\n[[sprung]]\nname = \"a\"\n"),
         ),
+        (
+            "force of a law",
+            format!(
+                "{MODEL}\n[[law]]\nname = \"drag\"\nforce = \"c * w\"\n[[law.parameter]]\nname = \"c\"\nunit = \"N\"\nusual = 1.0\n"
+            ),
+        ),
+        (
+            "law of the catalogue",
+            format!(
+                "{MODEL}\n[[law]]\nname = \"backlash\"\nforce = \"c * v\"\n[[law.parameter]]\nname = \"c\"\nunit = \"N\"\nusual = 1.0\n"
+            ),
+        ),
         ("wrong schema", replaced("simgap-model/1", "simgap-model/9")),
         (
             "unknown node",

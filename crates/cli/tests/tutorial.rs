@@ -1,4 +1,4 @@
-//! `docs/tutorial.md` and `docs/hydraulics.md`, followed word by word: every command is run in a shell in a fresh folder, and
+//! `docs/tutorial.md`, `docs/hydraulics.md` and `docs/own-laws.md`, followed word by word: every command is run in a shell in a fresh folder, and
 //! what the page shows is what is printed.
 //!
 //! `UPDATE_TUTORIAL=1 cargo test -p simgap-cli --test tutorial` writes into the pages what is printed;
@@ -268,6 +268,35 @@ fn verify_the_page_on_hydraulics_prints_what_it_shows() {
     let interval = &effect["parameters"][0]["ci95"];
     let [low, high] = [0, 1].map(|k| interval[k].as_f64().unwrap());
     assert!(low < 0.7 && 0.7 < high && high - low < 0.05, "{interval}");
+}
+
+/// The guide drags by 30 N tanh(v / 0.05 m/s) (1 + 6000 d²).
+#[test]
+fn verify_the_page_on_own_laws_prints_what_it_shows() {
+    let reader = check_page("own-laws.md", 5, &["effects", "diagnose", "simulate"]);
+    let answer = fs::read_to_string(reader.cwd.join("result/diagnosis.json")).unwrap();
+    let answer: serde_json::Value = serde_json::from_str(&answer).unwrap();
+    let effect = &answer["verdict"]["effects"][0];
+    assert_eq!(effect["kind"], "grease");
+    for (place, truth) in [30.0, 0.05, 6000.0].into_iter().enumerate() {
+        let parameter = &effect["parameters"][place];
+        let off = parameter["value"].as_f64().unwrap() / truth - 1.0;
+        assert!(off.abs() < 0.02, "{parameter}");
+    }
+    // The corrected model says what the diagnosis has said.
+    let stored = |name: &str| fs::read_to_string(reader.cwd.join(name)).unwrap();
+    let corrected = |text: &str, column: usize| -> Vec<f64> {
+        let rows = text.lines().skip(1);
+        let value = |row: &str| row.split(',').nth(column).unwrap().parse().unwrap();
+        rows.map(value).collect()
+    };
+    let told = corrected(&stored("result/predictions/check.csv"), 3);
+    let again = corrected(&stored("again.csv"), 1);
+    assert_eq!(told.len(), again.len());
+    // The bits of `simulate` are those of a file that was written and read.
+    for (a, b) in told.iter().zip(&again) {
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
+    }
 }
 
 /// The README shows lines of what the demo prints; `...` stands for those between.

@@ -1,6 +1,6 @@
 //! The answer in words and numbers.
 
-use simgap_effects::{Placed, find, same_place, slip_of};
+use simgap_effects::{Placed, find_of, same_place, slip_of};
 use simgap_estimate::{EstimateError, Fit, Interval};
 use simgap_inference::{CandidateModel, EffectPosterior, name};
 use simgap_model::{Location, Model};
@@ -100,7 +100,7 @@ fn named(
     let parameters = effect.parameters().iter().zip(intervals);
     let parameters = parameters.map(|(parameter, interval)| NamedParameter {
         name: parameter.name.to_string(),
-        unit: units.of(parameter, &posterior.placed.at),
+        unit: units.of(effect, parameter, &posterior.placed.at),
         value: interval.value,
         ci95: interval.ci95,
     });
@@ -350,14 +350,14 @@ pub(crate) fn locations(decision: &Decision, is_unknown: bool) -> Vec<LocationSh
 }
 
 /// What to measure next when rivals are left.
-pub(crate) fn next_experiment(verdict: &Verdict) -> Option<String> {
+pub(crate) fn next_experiment(model: &Model, verdict: &Verdict) -> Option<String> {
     let rivals: Vec<String> = verdict
         .effects
         .iter()
         .filter_map(|effect| {
             let rival = effect.indistinguishable.first()?;
-            let mine = find(&effect.kind)?.experiment();
-            let other = find(&rival.kind)?.experiment();
+            let mine = find_of(model, &effect.kind)?.experiment();
+            let other = find_of(model, &rival.kind)?.experiment();
             Some(if mine == other {
                 format!(
                     "to tell {} {} from {} {}: {mine}, with a sensor at each of the two places",

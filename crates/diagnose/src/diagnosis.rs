@@ -272,7 +272,8 @@ pub struct NamedEffect {
 pub struct NamedParameter {
     /// Name with the unit in it, as the model file has it: that of a motion along a line.
     pub name: String,
-    /// Unit, SI: `N m` for a force where the place turns, that of the channel in a channel; empty for a pure number.
+    /// Unit, SI: `N m` for a force where the place turns, that of the channel in a channel, that of a law of the
+    /// model file as stated there; empty for a pure number.
     pub unit: String,
     /// Estimate.
     pub value: f64,

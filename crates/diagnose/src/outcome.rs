@@ -38,7 +38,7 @@ pub(crate) fn nominal_estimates(
                 at: placed.at.clone(),
                 parameter: NamedParameter {
                     name: parameter.name.to_string(),
-                    unit: units.of(parameter, &placed.at),
+                    unit: units.of(placed.effect, parameter, &placed.at),
                     value: interval.value,
                     ci95: interval.ci95,
                 },

@@ -9,7 +9,7 @@
 use std::borrow::Borrow;
 use std::sync::Arc;
 
-use simgap_effects::{Placed, catalogue};
+use simgap_effects::{Placed, catalogue_of};
 use simgap_estimate::{Cancel, Fit, FitOptions, Problem, Start, fit, fit_initial_states};
 use simgap_inference::noise_model::whitening;
 use simgap_inference::{
@@ -96,7 +96,7 @@ pub fn diagnose<R: Borrow<Record>>(
     request: &Request<'_, R>,
     progress: Progress<'_>,
 ) -> Result<Outcome, DiagnoseError> {
-    known_kinds(request.withheld)?;
+    known_kinds(request)?;
     let mut data = divide(request.model, request.train, request.check)?;
     progress("nominal model");
     let model = read_inputs(request.model, &data.train, &request.cancel)?;
@@ -173,12 +173,13 @@ pub fn diagnose<R: Borrow<Record>>(
     )
 }
 
-fn known_kinds(withheld: &[String]) -> Result<(), DiagnoseError> {
-    let is_known = |kind: &String| catalogue().iter().any(|effect| effect.kind() == kind);
-    match withheld.iter().find(|kind| !is_known(kind)) {
+fn known_kinds<R>(request: &Request<'_, R>) -> Result<(), DiagnoseError> {
+    let all = catalogue_of(request.model);
+    let is_known = |kind: &String| all.iter().any(|effect| effect.kind() == kind);
+    match request.withheld.iter().find(|kind| !is_known(kind)) {
         None => Ok(()),
         Some(found) => {
-            let known: Vec<&str> = catalogue().iter().map(|e| e.kind()).collect();
+            let known: Vec<&str> = all.iter().map(|e| e.kind()).collect();
             Err(DiagnoseError::UnknownKind {
                 found: found.clone(),
                 known: known.join(", "),
@@ -289,7 +290,7 @@ fn finish<R: Borrow<Record>>(
             model: request.model.name.clone(),
             gap: checked.gap,
             r#where,
-            next_experiment: describe::next_experiment(&verdict),
+            next_experiment: describe::next_experiment(request.model, &verdict),
             verdict,
             turning: data.units.turning.clone(),
             candidates,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use simgap_effects::{Parameter, unit_of_rotation};
+use simgap_effects::{Effect, Parameter, unit_of_rotation};
 use simgap_model::{GROUND, Location, Model, OutputKind};
 use simgap_record::Record;
 use simgap_simulate::{input_unit, output_unit};
@@ -86,7 +86,11 @@ impl Units {
     }
 
     /// The unit of a parameter of an effect at a place; empty for a pure number.
-    pub(crate) fn of(&self, parameter: &Parameter, at: &Location) -> String {
+    pub(crate) fn of(&self, effect: &dyn Effect, parameter: &Parameter, at: &Location) -> String {
+        if !effect.names_hold_units() {
+            // A law of the user's, for this very place.
+            return plain(parameter.unit);
+        }
         let channel_unit = |channels: &[(String, &'static str)], name: &String| {
             let found = channels.iter().find(|(channel, _)| channel == name);
             found.map_or("", |(_, unit)| *unit)
@@ -150,8 +154,8 @@ mod tests {
         let rows: String = (0..9).map(|k| format!("0.{k},{k},1,{k}\n")).collect();
         let text = format!("t [s],F [kN],q [deg],x [mm/s]\n{rows}");
         let record = simgap_record::parse_csv("run.csv", text.as_bytes()).unwrap();
-        let parameters = find(kind).unwrap().parameters();
-        Units::new(&model, &record).of(&parameters[0], at)
+        let effect = find(kind).unwrap();
+        Units::new(&model, &record).of(effect, &effect.parameters()[0], at)
     }
 
     /// The shaft carries the angle of the arm to the motor; the ground does not carry it to the slide.

@@ -153,6 +153,11 @@ pub trait Effect: Sync + Send {
     /// Where it can sit.
     fn site(&self) -> SiteKind;
 
+    /// The only places where it can sit; empty where these are all of [`Effect::site`].
+    fn stated_places(&self) -> &[Location] {
+        &[]
+    }
+
     /// One sentence for an engineer.
     fn summary(&self) -> &'static str;
 
@@ -167,6 +172,11 @@ pub trait Effect: Sync + Send {
 
     /// The parameters, in the order of the value vectors.
     fn parameters(&self) -> &'static [Parameter];
+
+    /// Whether the names of its parameters end in their units, so that a reader of a name knows the unit.
+    fn names_hold_units(&self) -> bool {
+        true
+    }
 
     /// Starting values for a fit: one vector or, where the shape matters, several. Each is a small
     /// but visible instance of the effect at this site.

@@ -54,6 +54,16 @@ pub enum EffectError {
         /// As written.
         found: String,
         /// What is needed.
+        needed: String,
+    },
+    /// A law of the model file that cannot be an effect.
+    #[error("[[law]] \"{law}\": {found}, needed is {needed}")]
+    Law {
+        /// The law.
+        law: String,
+        /// What was found.
+        found: String,
+        /// What is needed.
         needed: &'static str,
     },
     /// The place is not in the model.

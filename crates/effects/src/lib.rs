@@ -27,6 +27,7 @@ mod error;
 mod free;
 mod kinds;
 mod line;
+mod own_law;
 mod parameter;
 mod place;
 mod prior;
@@ -43,6 +44,7 @@ pub use equivalent::{Equivalent, equivalents, equivalents_beside, likelier_line}
 pub use error::EffectError;
 pub use free::{VELOCITY_NODES, find_law, free_laws};
 pub use line::Line;
+pub use own_law::{catalogue_of, find_in, find_of, own_laws};
 pub use place::{Placed, places_of, same_place, sites};
 pub use prior::{EXACT, LocalPrior, Prior, SLIPPED, SLIPS, Slip, slip_of};
 pub use signal_map::{Sampled, SignalMap, most_beyond};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use simgap_model::{EffectEntry, GROUND, Location, Model, Node, NominalQuantity, same_pair};
 
-use crate::{Action, Effect, EffectError, Family, SiteKind, catalogue, find_law};
+use crate::{Action, Effect, EffectError, Family, SiteKind, catalogue_of, find_in};
 
 /// An effect at its place with its parameter values.
 #[derive(Clone)]
@@ -61,9 +61,10 @@ impl Placed {
     /// [`EffectError`] for an unknown kind or parameter, a missing parameter, a value outside its
     /// physical range, or a place that does not go with the kind or is not in the model.
     pub fn from_entry(model: &Model, entry: &EffectEntry) -> Result<Placed, EffectError> {
-        let effect = find_law(&entry.kind, &entry.at).ok_or_else(|| EffectError::UnknownKind {
+        let effect = find_in(model, &entry.kind, &entry.at);
+        let effect = effect.ok_or_else(|| EffectError::UnknownKind {
             found: entry.kind.clone(),
-            known: kinds(),
+            known: kinds(model),
         })?;
         let parameters = effect.parameters();
         if let Some(found) = entry
@@ -126,7 +127,16 @@ impl Placed {
             return Err(EffectError::WrongPlace {
                 kind: entry.kind.clone(),
                 found: entry.at.to_string(),
-                needed: effect.site().place(),
+                needed: effect.site().place().into(),
+            });
+        }
+        let stated = effect.stated_places();
+        if !stated.is_empty() && !stated.iter().any(|at| same_place(at, &entry.at)) {
+            let places: Vec<String> = stated.iter().map(Location::to_string).collect();
+            return Err(EffectError::WrongPlace {
+                kind: entry.kind.clone(),
+                found: entry.at.to_string(),
+                needed: format!("a place of its [[law]]: {}", places.join(", ")),
             });
         }
         model.check_location(&entry.at, &format!("[[effect]] \"{}\"", entry.kind))?;
@@ -234,8 +244,8 @@ impl SiteKind {
     }
 }
 
-fn kinds() -> String {
-    catalogue()
+fn kinds(model: &Model) -> String {
+    catalogue_of(model)
         .iter()
         .map(|effect| effect.kind())
         .collect::<Vec<_>>()
@@ -305,9 +315,12 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
     }
 }
 
-/// Every place in a model where an effect can sit: [`sites`] of its kind, and for a force on a mass the ports of a simulator as well.
+/// Every place in a model where an effect can sit: those that it states; else [`sites`] of its kind, and for a force on a mass the ports of a simulator as well.
 #[must_use]
 pub fn places_of(model: &Model, effect: &dyn Effect) -> Vec<Location> {
+    if !effect.stated_places().is_empty() {
+        return effect.stated_places().to_vec();
+    }
     let mut places = sites(model, effect.site());
     if effect.site() == SiteKind::Mass && effect.family() == Family::Force {
         let ports = model.ports.iter();

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use simgap_effects::{Action, Effect, Family, Placed, Prior, SiteScale, catalogue, places_of};
+use simgap_effects::{
+    Action, Effect, Family, Placed, Prior, SiteScale, catalogue_of, own_laws, places_of,
+};
 use simgap_model::{DEFAULT_UNCERTAINTY, Form, Location, Model, Node, OutputKind};
 use simgap_simulate::{ExternalPlant, Run, Simulator, substeps_for};
 
@@ -80,6 +82,7 @@ impl Problem {
     /// [`EstimateError`] when the model cannot be propagated or an effect of its file cannot be
     /// used.
     pub fn new(model: &Model, runs: Vec<Run>) -> Result<Problem, EstimateError> {
+        own_laws(model)?;
         let given = model
             .effects
             .iter()
@@ -216,7 +219,10 @@ impl Problem {
         let is_sought = |effect: &dyn Effect| {
             family(effect.family()) && !(resampled && lives_in_single_samples(effect))
         };
-        for &effect in catalogue().iter().filter(|effect| is_sought(**effect)) {
+        for effect in catalogue_of(&self.model)
+            .into_iter()
+            .filter(|effect| is_sought(*effect))
+        {
             for at in places_of(&self.model, effect) {
                 candidates.push(Candidate { effect, at });
             }

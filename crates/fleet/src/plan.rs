@@ -125,7 +125,7 @@ impl Plan {
                 "at least one, such as records = [\"{machine}/{date}/{record}.csv\"]",
             ));
         }
-        known_kinds(&file.withhold)?;
+        known_kinds(&file.withhold, None)?;
         let mut machines = BTreeMap::new();
         for entry in file.machine {
             let (name, entry) = machine_entry(entry).map_err(|(f, n)| refused(f, n))?;

@@ -16,6 +16,7 @@ impl Model {
         self.check_outputs()?;
         self.check_forces()?;
         self.check_blocks()?;
+        self.check_laws()?;
         for cylinder in &self.cylinders {
             let place = item("cylinder", &cylinder.name);
             self.check_pair(&cylinder.between, &place)?;
@@ -89,7 +90,7 @@ impl Model {
         Ok(())
     }
 
-    fn check_pair(&self, pair: &[String; 2], place: &str) -> Result<(), ModelError> {
+    pub(crate) fn check_pair(&self, pair: &[String; 2], place: &str) -> Result<(), ModelError> {
         self.resolve_pair(pair, || place.to_string())?;
         if pair[0] == pair[1] {
             return Err(ModelError::Shape {

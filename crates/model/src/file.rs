@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::body::file::{BodyFile, PointFile};
+use crate::law::file::LawFile;
 use crate::refuse::item;
 use crate::{
     Beam, Block, Cylinder, Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError,
@@ -49,6 +50,8 @@ struct ModelFile {
     parameter: Vec<PlantParameter>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     port: Vec<PlantPort>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    law: Vec<LawFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     effect: Vec<EffectFile>,
 }
@@ -174,6 +177,8 @@ impl Model {
             .enumerate()
             .map(|(i, effect)| effect.into_entry(i))
             .collect::<Result<Vec<_>, _>>()?;
+        let laws = file.law.into_iter();
+        let laws = laws.map(|law| law.into_law(text, &|offset| place_of(text, offset)));
         let mut model = Model {
             name: file.name,
             masses: file.mass,
@@ -185,6 +190,7 @@ impl Model {
             pendulums: file.pendulum,
             plant_parameters: file.parameter,
             ports: file.port,
+            laws: laws.collect::<Result<Vec<_>, _>>()?,
             effects,
             ..Model::default()
         };
@@ -257,6 +263,7 @@ impl Model {
             pendulum: self.pendulums.clone(),
             parameter: self.plant_parameters.clone(),
             port: self.ports.clone(),
+            law: self.laws.iter().map(LawFile::from_law).collect(),
             effect: self.effects.iter().map(EffectFile::from_entry).collect(),
         };
         toml::to_string(&file).map_err(|error| ModelError::Syntax {

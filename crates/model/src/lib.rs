@@ -51,6 +51,7 @@ mod frf;
 mod hydraulics;
 mod input;
 mod joined;
+mod law;
 mod matrices;
 mod model;
 mod modes;
@@ -75,6 +76,7 @@ pub use file::SCHEMA;
 pub use frf::{FrfKind, frequency_response};
 pub use hydraulics::{Cylinder, DriveValue, Edges, PRESSURE_UNIT_PA, Valve};
 pub use input::{Input, InputKind};
+pub use law::{Expression, Function, Known, Law, LawParameter, Operation, Symbol};
 pub use matrices::StructuralMatrices;
 pub use model::{Model, same_pair};
 pub use modes::{

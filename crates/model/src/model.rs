@@ -4,7 +4,7 @@ use faer::Mat;
 
 use crate::refuse::item;
 use crate::{
-    Beam, Block, Body, Cylinder, Damper, EffectEntry, GROUND, Input, InputKind, Load, Mass,
+    Beam, Block, Body, Cylinder, Damper, EffectEntry, GROUND, Input, InputKind, Law, Load, Mass,
     ModelError, Node, Output, Pendulum, PlantParameter, PlantPort, Spring, StructuralMatrices,
     Valve,
 };
@@ -50,6 +50,8 @@ pub struct Model {
     pub plant_parameters: Vec<PlantParameter>,
     /// Ports of a simulator of the user's, which are nodes.
     pub ports: Vec<PlantPort>,
+    /// Laws of the user's, which effects may have as their kind.
+    pub laws: Vec<Law>,
     /// Effects added to the nominal model.
     pub effects: Vec<EffectEntry>,
 }

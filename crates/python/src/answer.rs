@@ -93,7 +93,7 @@ impl Asked {
             false => &self.check,
         };
         distinct_stems(judged.iter().map(|input| &input.path))?;
-        known_kinds(&self.withheld)?;
+        known_kinds(&self.withheld, Some(&self.model))?;
         let of_model = |inputs: &[Input]| {
             let inputs = inputs.iter().map(|input| input.of_model(&self.model));
             inputs.collect::<Result<Vec<_>, _>>()

@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use simgap_app::effects::{Catalogue, known};
+use simgap_app::effects::{Catalogue, kinds, known};
 use simgap_app::{AppError, json, modes as app_modes, simulation};
-use simgap_effects::catalogue;
 
 use crate::error::raised;
 use crate::frame::{Frame, frame};
@@ -43,11 +42,15 @@ pub(crate) fn modes(model: &Bound<'_, NativeModel>) -> PyResult<String> {
 
 /// The text of `simgap effects --format json`, of one kind or of all.
 #[pyfunction]
-#[pyo3(signature = (kind))]
-pub(crate) fn effects(kind: Option<&str>) -> PyResult<String> {
+#[pyo3(signature = (kind, model))]
+pub(crate) fn effects(
+    kind: Option<&str>,
+    model: Option<&Bound<'_, NativeModel>>,
+) -> PyResult<String> {
+    let model = model.map(|model| &*model.get().model);
     let found = match kind {
-        None => Catalogue::of(catalogue()),
-        Some(kind) => Catalogue::of(&[known("", kind).map_err(raised)?]),
+        None => Catalogue::of(&kinds(model)),
+        Some(kind) => Catalogue::of(&[known("", kind, model).map_err(raised)?]),
     };
     json(&found).map_err(raised)
 }

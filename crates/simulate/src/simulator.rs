@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use simgap_effects::{Action, Placed, SignalMap};
+use simgap_effects::{Action, Placed, SignalMap, own_laws};
 use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, elementary};
 use simgap_model::{Location, Model, Node, same_pair};
 
@@ -185,8 +185,9 @@ impl Simulator {
     /// A model file with the effects it lists.
     ///
     /// # Errors
-    /// [`SimulateError::Effect`] when an effect of the file cannot be used.
+    /// [`SimulateError::Effect`] when an effect or a law of the file cannot be used.
     pub fn of_file(model: &Model, runs: &[Run]) -> Result<Simulator, SimulateError> {
+        own_laws(model)?;
         let effects = model
             .effects
             .iter()

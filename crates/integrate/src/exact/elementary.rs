@@ -116,6 +116,42 @@ pub fn exp(x: f64) -> f64 {
     power * two_to(half) * two_to(k - half)
 }
 
+/// eˣ − 1 for x up to 709, close to zero as well.
+///
+/// ```text
+/// x = k ln 2 + r,  |r| ≤ ln 2 / 2;   eˣ − 1 = 2ᵏ (eʳ − 1) + (2ᵏ − 1)
+/// ```
+///
+/// Off by less than three units in the last place.
+#[inline(always)]
+fn exp_m1(x: f64) -> f64 {
+    // Below −40 it is −1.
+    let bounded = x.clamp(-40.0, 709.0);
+    let k = (bounded * LOG2_E + ROUND) - ROUND;
+    let (high, low) = (bounded - k * LN_2[0], k * LN_2[1]);
+    let r = high - low;
+    let z = r * r;
+    let c = r - z * polynomial(&EXP, z);
+    let less_one = high - (low - r * c / (2.0 - c));
+    let two_to = |k: f64| f64::from_bits((k + 1023.0 + ROUND).to_bits() << 52);
+    two_to(k) * less_one + (two_to(k) - 1.0)
+}
+
+/// Hyperbolic tangent.
+///
+/// ```text
+/// tanh x = (e^2x − 1) / (e^2x + 1)
+/// ```
+///
+/// Off by less than five units in the last place.
+#[must_use]
+#[inline(always)]
+pub fn tanh(x: f64) -> f64 {
+    // Beyond these it is −1 or 1.
+    let less_one = exp_m1(2.0 * x.clamp(-20.0, 20.0));
+    less_one / (less_one + 2.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,6 +177,26 @@ mod tests {
         // Where an angle itself is only known to 1e-4 rad.
         let far: f64 = 1e12;
         assert!((sin(far) - far.sin()).abs() < 1e-4);
+    }
+
+    #[test]
+    fn verify_what_is_made_of_the_exponential_against_the_standard_library() {
+        for k in -200_000..=200_000 {
+            for x in [
+                f64::from(k) * 1.1e-4,
+                f64::from(k) * 3.5e-3,
+                f64::from(k) * 1e-12,
+            ] {
+                let close = |ours: f64, theirs: f64, ulps: f64| {
+                    ours == theirs || (ours - theirs).abs() <= ulps * f64::EPSILON * theirs.abs()
+                };
+                assert!(close(exp_m1(x), x.exp_m1(), 3.0), "exp_m1 {x}");
+                assert!(close(tanh(x), x.tanh(), 5.0), "tanh {x}");
+            }
+        }
+        assert_eq!((exp_m1(0.0), tanh(0.0)), (0.0, 0.0));
+        assert_eq!((tanh(1e9), tanh(f64::NEG_INFINITY)), (1.0, -1.0));
+        assert!(tanh(f64::NAN).is_nan() && exp_m1(f64::NAN).is_nan());
     }
 
     #[test]

@@ -275,6 +275,30 @@ class Model:
         motion = {"displacement": displacement, "velocity": velocity}
         return self._with("port", {"name": name, **motion})
 
+    def law(
+        self,
+        name: str,
+        force: str,
+        parameters: Mapping[str, Mapping[str, str | float]],
+        *,
+        between: Sequence[str] | None = None,
+        summary: str | None = None,
+    ) -> Model:
+        """Adds a law of your own: a force across a member as an expression of the displacement ``d``, the
+        velocity ``v``, the time ``t`` and its parameters. It competes with the catalogue. Each parameter has a
+        ``unit`` and what is known of it: ``usual``, or ``value`` and ``uncertainty``, or ``lower`` and
+        ``upper``::
+
+        model.law("grease", "c * tanh(v / v0)", {"c": {"unit": "N", "usual": 20.0},
+                                                 "v0": {"unit": "m/s", "usual": 0.05}})
+        """
+        pair = None if between is None else list(between)
+        values = {"summary": summary, "between": pair, "force": force}
+        model = self._with("law", {"name": name, **values})
+        for parameter, known in parameters.items():
+            model = model._with("law.parameter", {"name": parameter, **known})
+        return model
+
     def effect(
         self,
         kind: str,

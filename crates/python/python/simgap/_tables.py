@@ -163,7 +163,14 @@ class Kind:
         return made(cls, {**values, "parameters": parameters, "confused_with": confused})
 
 
-def effects(kind: str | None = None) -> dict[str, Kind]:
-    """The catalogue of effects by kind, or one entry of it."""
-    found = json.loads(_simgap.effects(kind))["effects"]
+def effects(
+    kind: str | None = None, model: Model | str | os.PathLike[str] | None = None
+) -> dict[str, Kind]:
+    """The catalogue of effects by kind, or one entry of it; with a model its own laws
+    (``[[law]]``) too.
+    """
+    if model is not None and not isinstance(model, Model):
+        model = Model.from_file(model)
+    native = None if model is None else model._compiled()
+    found = json.loads(_simgap.effects(kind, native))["effects"]
     return {one["kind"]: Kind.of(one) for one in found}

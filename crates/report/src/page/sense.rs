@@ -2,7 +2,7 @@
 //! the motion of the check records, against the time between samples.
 
 use simgap_diagnose::{NamedEffect, NamedParameter, PlaceMotion};
-use simgap_effects::{Parameter, find};
+use simgap_effects::{Parameter, find, find_of};
 use simgap_model::{Location, same_pair};
 
 use super::ReportInput;
@@ -29,8 +29,9 @@ pub(super) fn sense(
     parameter: &NamedParameter,
     input: &ReportInput<'_>,
 ) -> String {
-    let law =
-        find(&effect.kind).and_then(|e| e.parameters().iter().find(|p| p.name == parameter.name));
+    let model = input.nominal.or(input.corrected);
+    let known = model.map_or_else(|| find(&effect.kind), |model| find_of(model, &effect.kind));
+    let law = known.and_then(|e| e.parameters().iter().find(|p| p.name == parameter.name));
     let mut out = Vec::new();
     let value = parameter.value;
     if parameter.name.ends_with("factor") && value.is_finite() {
@@ -91,7 +92,13 @@ fn compared(parameter: &NamedParameter, at: &Location, around: &Surroundings) ->
     let x = around.largest_displacement;
     let v = around.largest_velocity;
     let on_machine = matches!(at, Location::Between(_) | Location::Mass(_));
-    let (part, whole, of) = match quantity(&parameter.name).unit.as_str() {
+    // The unit of a motion along a line tells what it is; a name without one is that of a law of the user's.
+    let of_name = quantity(&parameter.name).unit;
+    let unit = match of_name.is_empty() {
+        true => raised(&parameter.unit),
+        false => of_name,
+    };
+    let (part, whole, of) = match unit.as_str() {
         "N" if on_machine => (
             size,
             around.largest_force,

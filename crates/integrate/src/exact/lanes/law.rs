@@ -122,6 +122,71 @@ impl<L: LawLanes> WithSimd for Remember<'_, L> {
     }
 }
 
+/// Laws of eight sets without a dry part and without memory that compute their forces together, operation by operation: for
+/// laws that are not one compiled function, and so do not become vector instructions lane by lane.
+pub trait PackLaw: Send + Sync + 'static {
+    /// The single-valued part, N, at displacements (m), velocities (m/s) and times (s). To the last bit it is what
+    /// [`ForceLaw::force`] of each set is, in every lane. Mark it `#[inline(always)]` to have it in vector instructions.
+    fn forces(&self, displacement: &Pack, velocity: &Pack, time_s: &Pack) -> Pack;
+}
+
+/// Laws that compute their forces together, as [`ForceLaw::lanes`] hands them over.
+#[must_use]
+pub fn together(law: impl PackLaw) -> Box<dyn LaneLaw> {
+    Box::new(Packed(law))
+}
+
+struct Packed<L>(L);
+
+impl<L: PackLaw> LawLanes for Packed<L> {
+    #[inline(always)]
+    fn forces(&self, [displacement, velocity, time_s]: &[Pack; 3], _: &Pack) -> Pack {
+        self.0.forces(displacement, velocity, time_s)
+    }
+
+    fn force(&self, lane: usize, motion: MemberMotion) -> f64 {
+        let [displacement, velocity, time_s] =
+            [motion.displacement, motion.velocity, motion.time_s].map(|x| Pack::of(|_| x));
+        self.0.forces(&displacement, &velocity, &time_s).0[lane]
+    }
+
+    fn tangent(&self, lane: usize, motion: MemberMotion) -> Tangent {
+        Tangent {
+            force: self.force(lane, motion),
+            damping: 0.0,
+        }
+    }
+
+    fn follow(
+        &self,
+        lane: usize,
+        memory: f64,
+        _: f64,
+        _: MemberMotion,
+        to: MemberMotion,
+    ) -> Followed {
+        Followed::arrived(self.force(lane, to), memory)
+    }
+
+    fn dry_level(&self, _: usize, _: f64) -> f64 {
+        0.0
+    }
+}
+
+impl<L: PackLaw> LaneLaw for Packed<L> {
+    fn solve(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Solve(self, element));
+    }
+
+    fn tangent(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Tangents(self, element));
+    }
+
+    fn remember(&self, arch: Arch, element: &mut ElementLanes) {
+        arch.dispatch(Remember(self, element));
+    }
+}
+
 /// Laws that are asked one after the other.
 pub(super) struct OneByOne<'a>(pub(super) [&'a dyn ForceLaw; LANES]);
 

@@ -25,7 +25,7 @@ mod wide;
 
 pub use batch::{Batch, LaneObserver, LaneSnapshot};
 pub use element::{ElementLanes, LaneLaw};
-pub use law::gather;
+pub use law::{PackLaw, gather, together};
 pub use set::LaneSet;
 
 /// Sets in a pack: one register of AVX-512, two of AVX2.

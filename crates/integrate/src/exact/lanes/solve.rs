@@ -16,6 +16,16 @@ use crate::exact::plant::{AT_REST, FORCE_TOLERANCE, SECANT_STEPS, dry_force};
 pub(super) trait LawLanes {
     fn force(&self, lane: usize, motion: MemberMotion) -> f64;
 
+    /// The forces of all lanes at displacements, velocities and times.
+    #[inline(always)]
+    fn forces(&self, at: &[Pack; 3], step_s: &Pack) -> Pack {
+        let mut force = Pack::ZERO;
+        for l in 0..LANES {
+            force.0[l] = self.force(l, motion_at(at, step_s, l));
+        }
+        force
+    }
+
     fn tangent(&self, lane: usize, motion: MemberMotion) -> Tangent;
 
     /// One step along a move.
@@ -169,11 +179,7 @@ impl<S: Simd, L: LawLanes> OwnForce<'_, S, L> {
             let [force, _] = follow(self.laws, &self.memory, [&self.from, &to], &self.step_s);
             return Wide::of(self.simd, &force);
         }
-        let mut force = Pack::ZERO;
-        for l in 0..LANES {
-            force.0[l] = self.laws.force(l, motion_at(&to, &self.step_s, l));
-        }
-        Wide::of(self.simd, &force)
+        Wide::of(self.simd, &self.laws.forces(&to, &self.step_s))
     }
 }
 

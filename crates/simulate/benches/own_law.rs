@@ -1,0 +1,163 @@
+//! Laws of the user's beside the laws of the catalogue that say the same, 60 s of one mass at 1 kHz.
+//!
+//! `cargo bench -p simgap-simulate --bench own_law`; the items counted are samples times sets. What a law as text costs beside
+//! the compiled one is printed first: the two take turns in one run, so that whatever else the machine does meets both, and the
+//! shortest time of each counts.
+#![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
+
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+
+use divan::counter::ItemsCount;
+use simgap_effects::{Placed, find_of};
+use simgap_model::{Law, LawParameter, Location, Model};
+use simgap_simulate::{Job, Mended, Run, Simulator, predict_all};
+
+const SAMPLES: usize = 60_000;
+const STEP_S: f64 = 1e-3;
+
+const MASS: &str = r#"schema = "simgap-model/1"
+name = "mass"
+[[mass]]
+name = "table"
+value = 1.0
+[[spring]]
+name = "a"
+between = ["table", "ground"]
+stiffness = 900.0
+[[damper]]
+name = "a"
+between = ["table", "ground"]
+damping = 1.4
+[[input]]
+channel = "u"
+kind = "force"
+at = "table"
+[[output]]
+channel = "y"
+kind = "displacement"
+at = "table"
+"#;
+
+/// A law of the catalogue, and the same as text.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    kind: &'static str,
+    force: &'static str,
+    names: &'static [&'static str],
+    values: &'static [f64],
+}
+
+const PAIRS: [Pair; 3] = [
+    Pair {
+        kind: "quadratic_damping",
+        force: "c * v * abs(v)",
+        names: &["c"],
+        values: &[3.0],
+    },
+    Pair {
+        kind: "cubic_stiffness",
+        force: "k * d^3",
+        names: &["k"],
+        values: &[2e6],
+    },
+    Pair {
+        kind: "position_periodic_force",
+        force: "a * sin(2 * pi * d / p) + b * cos(2 * pi * d / p)",
+        names: &["a", "b", "p"],
+        values: &[1.0, 0.5, 0.01],
+    },
+];
+
+fn run() -> Run {
+    let wave = |k: usize| {
+        let t = STEP_S * k as f64;
+        12.0 * ((TAU * 1.3 * t).sin() + 0.5 * (TAU * 4.1 * t).sin())
+    };
+    Run {
+        name: "made here".into(),
+        start_s: 0.0,
+        time_step_s: STEP_S,
+        len: SAMPLES,
+        first_index: 0,
+        inputs: vec![(0..SAMPLES).map(wave).collect()],
+        measured: vec![None],
+        mended: Mended::default(),
+    }
+}
+
+/// Sets whose values are off by some per cent.
+fn sets(pair: Pair, is_text: bool, count: usize) -> Vec<Simulator> {
+    let mut model = Model::from_toml(MASS).unwrap();
+    let parameters = pair
+        .names
+        .iter()
+        .map(|name| LawParameter::of_size(name, "1", 1.0));
+    model.laws.push(Law {
+        name: "own".into(),
+        summary: None,
+        between: vec![],
+        force: pair.force.into(),
+        parameters: parameters.collect(),
+    });
+    let effect = find_of(&model, if is_text { "own" } else { pair.kind }).unwrap();
+    let set = |k: usize| {
+        let size = 1.0 + 0.05 * k as f64 / count as f64;
+        let at = Location::Between(["table".into(), "ground".into()]);
+        let values = pair.values.iter().map(|value| value * size).collect();
+        Simulator::new(&model, &[Placed::new(effect, at, values)], 1).unwrap()
+    };
+    (0..count).map(set).collect()
+}
+
+fn jobs<'a>(sets: &'a [Simulator], run: &'a Run) -> Vec<Job<'a>> {
+    let job = |simulator| Job {
+        simulator,
+        run,
+        initial: &[],
+        smooth: false,
+    };
+    sets.iter().map(job).collect()
+}
+
+/// Rounds of the comparison, in each of which both laws are simulated once.
+const ROUNDS: usize = 15;
+
+fn compared() {
+    let run = run();
+    for pair in PAIRS {
+        for count in [1, 8] {
+            let both = [false, true].map(|is_text| sets(pair, is_text, count));
+            let mut least = [Duration::MAX; 2];
+            for _ in 0..ROUNDS {
+                for (sets, least) in both.iter().zip(&mut least) {
+                    let begun = Instant::now();
+                    divan::black_box(predict_all(&jobs(sets, &run)));
+                    *least = (*least).min(begun.elapsed());
+                }
+            }
+            let ns = least.map(|time| time.as_secs_f64() * 1e9 / (SAMPLES * count) as f64);
+            println!(
+                "{count} set(s), {}: {:.1} ns per sample and set, as text {:.1} ns, {:.2} times",
+                pair.kind,
+                ns[0],
+                ns[1],
+                ns[1] / ns[0]
+            );
+        }
+    }
+}
+
+#[divan::bench(args = [false, true], consts = [1, 8], sample_count = 10)]
+fn quadratic<const SETS: usize>(bencher: divan::Bencher<'_, '_>, is_text: bool) {
+    let (run, sets) = (run(), sets(PAIRS[0], is_text, SETS));
+    let jobs = jobs(&sets, &run);
+    bencher
+        .counter(ItemsCount::new(SAMPLES * SETS))
+        .bench_local(|| predict_all(&jobs));
+}
+
+fn main() {
+    compared();
+    divan::main();
+}
