@@ -132,6 +132,27 @@ impl<'a> Integrand<'a> {
         (centre, hessian, precision.collect())
     }
 
+    /// The estimate of every value.
+    pub(crate) fn estimates(&self) -> Vec<f64> {
+        let each = self.coordinates.iter();
+        each.map(|(_, marginal)| marginal.estimate()).collect()
+    }
+
+    /// xᵀAx of other values; infinite on the other side of where a size vanishes.
+    pub(crate) fn apart_from(&self, values: &[f64]) -> f64 {
+        let (_, hessian, precision) = self.quadratic();
+        let each = self.coordinates.iter().zip(values);
+        let steps: Vec<f64> = each
+            .map(|((_, marginal), value)| marginal.step_to(*value))
+            .collect();
+        let mut square = 0.0;
+        for (i, a) in steps.iter().enumerate() {
+            let row = steps.iter().enumerate().map(|(j, b)| hessian[(i, j)] * b);
+            square += a * (row.sum::<f64>() + precision[i] * a);
+        }
+        square
+    }
+
     /// δ of every coordinate that the data do not see and that is not where its prior would have it.
     pub(crate) fn unseen(&self) -> Vec<f64> {
         let (centre, hessian, _) = self.quadratic();

@@ -4,6 +4,7 @@
 //! no quadratic is used. The tables are shown on that page.
 //!
 //! Reference: \[Skilling2006\].
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod cases;
 mod closed_form;
@@ -31,6 +32,8 @@ const CLOSE: f64 = 0.5;
 const MOST_ERROR: f64 = 0.17;
 /// Points that live.
 const LIVE: usize = 600;
+/// The same where each costs much.
+const FEWER: usize = 300;
 /// Draws of importance sampling.
 const DRAWS: usize = 10_000;
 
@@ -91,6 +94,37 @@ impl Solved {
             &scale_at,
             draws,
         ))
+    }
+
+    /// The same set fitted to the end from another start, if ln Z is finite there.
+    fn again(&self, start: &Start) -> Option<Solved> {
+        let noise = NoiseModel {
+            effective_share: self.options.effective_share.clone(),
+            floor: self.options.floor.clone(),
+        };
+        let budget = Budget {
+            progress: &|_| {},
+            is_spent: &|| false,
+        };
+        let mut search = Search::new(&self.problem, &noise, self.space.clone(), budget);
+        search.options = noise.final_options();
+        let set = search.fit(start).ok()?;
+        let mut problem = self.problem.with_runs(self.problem.runs.clone());
+        problem.leaves_out_ends = true;
+        set.log_marginal_likelihood.is_finite().then(|| Solved {
+            problem,
+            space: self.space.clone(),
+            options: self.options.clone(),
+            set,
+        })
+    }
+
+    /// Whether another fit lies within three standard deviations of this one.
+    fn is_same_peak(&self, other: &Solved) -> bool {
+        let there = other.with(Draws::AboutEstimate, |integrand| integrand.estimates());
+        self.with(Draws::AboutEstimate, |integrand| {
+            integrand.apart_from(&there) < 9.0
+        })
     }
 
     fn log_z(&self) -> f64 {
@@ -222,25 +256,56 @@ fn val_nested_sampling_of_ten_sets_from_their_priors() {
     }
 }
 
-/// Where the core takes one peak of many, its ln Z is too small.
+/// Where a set has many peaks, the core takes the highest.
 #[test]
 #[ignore = "takes minutes"]
 fn val_nested_sampling_of_many_peaks() {
     let mut table = String::from(
-        "| Set | ln Z, core | nested sampling | error | core − nested |\n|---|---|---|---|---|\n",
+        "| Set | peaks found | ln Z, highest peak | sum of the peaks | nested sampling | error |\n|---|---|---|---|---|---|\n",
     );
     for case in of_many_peaks() {
-        let solved = Solved::new(&case);
-        let found = solved.with(Draws::FromPrior, |integrand| sampled(integrand, LIVE));
-        let difference = solved.log_z() - found.log_z;
-        let (core, nested, error) = (solved.log_z(), found.log_z, found.error);
-        writeln!(
-            table,
-            "| {} | {core:.2} | {nested:.2} | {error:.2} | {difference:+.2} |",
-            case.name
-        )
-        .unwrap();
-        assert!(difference < CLOSE, "{table}");
+        let peaks = peaks(&case);
+        let highest = &peaks[0];
+        let sum: f64 = peaks
+            .iter()
+            .map(|peak| (peak.log_z() - highest.log_z()).exp())
+            .sum();
+        let sum = highest.log_z() + sum.ln();
+        let found = highest.with(Draws::FromPrior, |integrand| sampled(integrand, FEWER));
+        let line = format!(
+            "| {} | {} | {:.2} | {sum:.2} | {:.2} | {:.2} |",
+            case.name,
+            peaks.len(),
+            highest.log_z(),
+            found.log_z,
+            found.error
+        );
+        println!("{line}");
+        assert!(highest.log_z() - found.log_z < CLOSE, "{line}");
+        writeln!(table, "{line}").unwrap();
     }
     insta::assert_snapshot!("many_peaks", table);
+}
+
+/// What fits from the starts of the first effect of a case end at, each peak once, the highest first.
+fn peaks(case: &Case) -> Vec<Solved> {
+    let first = Solved::new(case);
+    let placed = &first.set.effects()[0];
+    let scale = first.space.scale_at(&placed.at).unwrap();
+    let mut starts = placed.effect.starts(&scale);
+    starts.extend(placed.effect.sweep(&scale));
+    let mut found: Vec<Solved> = vec![];
+    let starts = starts.into_iter().map(|values| {
+        let mut start = first.set.fit.estimate.clone();
+        start.effects[0] = Placed::new(placed.effect, placed.at.clone(), values);
+        start
+    });
+    let mut fits: Vec<Solved> = starts.filter_map(|start| first.again(&start)).collect();
+    fits.sort_by(|a, b| b.log_z().total_cmp(&a.log_z()));
+    for solved in fits {
+        if found.iter().all(|known| !known.is_same_peak(&solved)) {
+            found.push(solved);
+        }
+    }
+    found
 }

@@ -102,6 +102,29 @@ impl Marginal {
         }
     }
 
+    pub(crate) fn estimate(&self) -> f64 {
+        self.estimate
+    }
+
+    /// u − û of another value; infinite on the other side of where a size vanishes.
+    pub(crate) fn step_to(&self, value: f64) -> f64 {
+        match self.law {
+            Law::Normal { .. } => value - self.estimate,
+            Law::OfEffect(Prior::Uniform { width }, _) => {
+                let step = value - self.estimate;
+                step - width * (step / width).round()
+            }
+            Law::OfEffect(prior, parameter) => {
+                let neutral = neutral(&parameter);
+                if (value < neutral) != (self.estimate < neutral) {
+                    return f64::INFINITY;
+                }
+                let coordinate = |value: f64| prior.local(value, &parameter).coordinate;
+                coordinate(value) - coordinate(self.estimate)
+            }
+        }
+    }
+
     /// (u − m)/s of the law.
     pub(crate) fn apart(&self, u: f64) -> f64 {
         match self.law {

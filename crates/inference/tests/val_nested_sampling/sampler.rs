@@ -27,6 +27,8 @@ const TOGETHER: usize = 64;
 /// Draws from the ellipsoid over those kept from which on points walk, and steps of a walk for each dimension.
 const FEW: usize = 100;
 const STEPS: usize = 3;
+/// Length of a chord that a walk gives up, in standard deviations of the living points.
+const SHORTEST: f64 = 1e-9;
 /// Part of Z that the living points may hold at the end, as their sum is a mean of few.
 const REST: f64 = 0.01;
 
@@ -218,7 +220,7 @@ impl Source<'_, '_> {
                 if value > floor {
                     walkers[k].moves(point, value, ellipsoid, &mut self.random);
                 } else {
-                    walkers[k].shrinks(along);
+                    walkers[k].shrinks(along, ellipsoid, &mut self.random);
                 }
             }
         }
@@ -269,8 +271,12 @@ impl Walker {
         (self.direction, self.chord) = ellipsoid.chord(&self.here, random);
     }
 
-    fn shrinks(&mut self, along: f64) {
+    /// Shortens the chord; one so short that nothing on it is above the floor is left for another.
+    fn shrinks(&mut self, along: f64, ellipsoid: &Ellipsoid, random: &mut Random) {
         self.chord[usize::from(along > 0.0)] = along;
+        if self.chord[1] - self.chord[0] < SHORTEST {
+            (self.direction, self.chord) = ellipsoid.chord(&self.here, random);
+        }
     }
 }
 
