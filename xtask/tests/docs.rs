@@ -132,6 +132,21 @@ fn links(text: &str) -> Vec<&str> {
     found
 }
 
+/// The tables of ln Z on the page are those that the test of `inference` makes.
+#[test]
+fn verify_the_tables_of_log_marginal_likelihoods_are_those_of_the_test() {
+    let page = read(&root().join("docs/theory/inference.md"));
+    let folder = root().join("crates/inference/tests/val_nested_sampling/snapshots");
+    for name in ["ten_sets", "beyond_a_quadratic", "many_peaks"] {
+        let file = read(&folder.join(format!("val_nested_sampling__{name}.snap")));
+        let table = file.splitn(3, "---\n").nth(2).unwrap_or(&file).trim();
+        assert!(
+            page.contains(table),
+            "{name}: the page does not show\n{table}"
+        );
+    }
+}
+
 #[test]
 fn verify_the_links_of_the_pages_lead_somewhere() {
     let mut all = pages(&root().join("docs"));
