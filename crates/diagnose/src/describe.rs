@@ -2,7 +2,7 @@
 
 use simgap_effects::{Placed, find_of, same_place, slip_of};
 use simgap_estimate::{EstimateError, Fit, Interval};
-use simgap_inference::{CandidateModel, EffectPosterior, name};
+use simgap_inference::{CandidateModel, EffectPosterior, is_nominal, name};
 use simgap_model::{Location, Model};
 
 use crate::check::{Check, Checked};
@@ -40,10 +40,10 @@ pub(crate) fn verdict(
     };
     let mut order: Vec<usize> = (0..decision.effects.len()).collect();
     order.sort_by(|&i, &j| {
-        // What explains most comes first, parameters that are hardly off last.
+        // What the model lacks comes before parameters of it that are off besides; then what explains most.
         let [one, other] = [i, j].map(|k| &decision.effects[k]);
-        let adjusted_last = one.is_adjustment.cmp(&other.is_adjustment);
-        adjusted_last.then(other.explains.total_cmp(&one.explains))
+        let by_family = is_nominal(&one.placed).cmp(&is_nominal(&other.placed));
+        by_family.then(other.explains.total_cmp(&one.explains))
     });
     let own = 1.0 - decision.other.probability;
     let named: Vec<NamedEffect> = order

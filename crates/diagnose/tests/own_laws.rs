@@ -75,12 +75,8 @@ fn verify_a_law_is_named_with_its_values_and_withheld() {
         let off = parameter.value / truth - 1.0;
         assert!(off.abs() < 0.1, "{parameter:?}");
     }
-    let units: Vec<_> = effect
-        .parameters
-        .iter()
-        .map(|p| p.unit.as_deref())
-        .collect();
-    assert_eq!(units, [Some("N"), Some("m/s"), Some("1/m^2")]);
+    let units: Vec<_> = effect.parameters.iter().map(|p| p.unit.as_str()).collect();
+    assert_eq!(units, ["N", "m/s", "1/m^2"]);
     // The corrected model holds the law and its values, and is a model of its own.
     let written = outcome.corrected.to_toml().unwrap();
     let read = Model::from_toml(&written).unwrap();

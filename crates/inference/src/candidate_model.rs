@@ -143,7 +143,7 @@ pub(crate) fn replace(start: &Start, index: usize, effect: Placed, nominal: Nomi
 }
 
 /// Deviation of the nominal parameters from which on they are bent: four standard deviations of one of them, say.
-pub(crate) const BENT: f64 = 8.0;
+const BENT: f64 = 8.0;
 
 /// Whether a set takes the nominal parameters further than their prior allows.
 pub(crate) fn is_bent(set: &CandidateModel) -> bool {

@@ -14,11 +14,11 @@ use simgap_estimate::{EstimateError, FitOptions, fit};
 
 use crate::asked::Asked;
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, name, rank, remove};
-use crate::explained::{explained, is_adjustment};
 use crate::gap::RELEVANT_SHARE;
 use crate::motion;
 use crate::noise_model::NOISE_KNOWN;
 use crate::search::Search;
+use crate::shapley::shapley_values;
 
 /// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
 /// name, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
@@ -49,11 +49,8 @@ pub struct EffectPosterior {
     pub worth: f64,
     /// Share of the gap that it closes, rms, in the channel that profits most.
     pub closes: f64,
-    /// Share of the motion that it explains, mean square: its Shapley value in the set.
+    /// Share of the motion that it explains, mean square: its Shapley value among the laws of the set.
     pub explains: f64,
-    /// Whether it is a nominal parameter that is off by no more than is to be expected of what the model states: no cause, but
-    /// told.
-    pub is_adjustment: bool,
     /// What cannot be told from it, likeliest first.
     pub rivals: Vec<Rival>,
     /// What is the same thing by another name on this plant, whatever the data.
@@ -106,7 +103,7 @@ pub fn model_posterior(
     let asked = relevance.ask(search, pool)?;
     let shares = match asked.best() {
         Some(best) => (0..best.effects().len())
-            .zip(explained(search, &asked, best)?)
+            .zip(explained(search, &relevance, &asked, best)?)
             .map(|(i, explains)| share(search, &relevance, &asked, best, (i, explains)))
             .collect::<Result<Vec<_>, EstimateError>>()?,
         None => vec![],
@@ -201,6 +198,14 @@ impl Relevance {
             }
         }
         Ok(asked)
+    }
+
+    /// Share of the motion that a set leaves, mean square.
+    fn left(&self, set: &CandidateModel) -> f64 {
+        let channels = set.fit.variance.iter().zip(&self.motion);
+        channels
+            .map(|(left, motion)| left / (motion * motion))
+            .sum()
     }
 
     /// Whether all effects of a set are relevant. Of an irrelevant one, the set without it is asked next.
@@ -344,7 +349,6 @@ fn effect(
         worth: share.worth,
         closes: share.closes,
         explains: share.explains,
-        is_adjustment: is_adjustment(search, own),
         rivals,
         equivalents: same,
     }
@@ -353,4 +357,32 @@ fn effect(
 /// The places of all effects of a set but one.
 fn all_but(set: &CandidateModel, index: usize) -> Vec<usize> {
     (0..set.effects().len()).filter(|i| *i != index).collect()
+}
+
+/// What each effect of a set explains, as a share of the motion, mean square: the Shapley value of a law among the laws of
+/// the set, its wrong nominal parameters as they are; of such a parameter what the others leave without it.
+fn explained(
+    search: &Search<'_>,
+    relevance: &Relevance,
+    asked: &Asked,
+    set: &CandidateModel,
+) -> Result<Vec<f64>, EstimateError> {
+    let (parameters, laws): (Vec<usize>, Vec<usize>) =
+        (0..set.effects().len()).partition(|i| is_nominal(&set.effects()[*i]));
+    let left = |part: &[usize]| -> Result<f64, EstimateError> {
+        Ok(relevance.left(asked.part(search, set, part)?.as_ref()))
+    };
+    let mut explained = vec![0.0; set.effects().len()];
+    let of_laws = shapley_values(laws.len(), |some| {
+        let mut part = parameters.clone();
+        part.extend(some.iter().map(|k| laws[*k]));
+        left(&part).map(|left| -left)
+    })?;
+    for (law, value) in laws.iter().zip(of_laws) {
+        explained[*law] = value;
+    }
+    for parameter in parameters {
+        explained[parameter] = left(&all_but(set, parameter))? - relevance.left(set);
+    }
+    Ok(explained)
 }
