@@ -163,8 +163,11 @@ pub(crate) fn fit_with(
         let kept = at.columns;
         at = complete(problem, &layout, &theta, next.probe, |run, place| {
             (keep && layout.is_nuisance(place)).then(|| {
-                let ratio = ratio(&layout, place, &before, &theta);
-                carried(&kept[run][place], ratio)
+                let column = &kept[run][place];
+                match next.is_multiplied {
+                    true => carried(column, ratio(&layout, place, &before, &theta)),
+                    false => column.clone(),
+                }
             })
         })?;
         if gain >= weights.converged {
@@ -193,7 +196,7 @@ fn ratio(layout: &Layout, place: usize, before: &[f64], after: &[f64]) -> f64 {
     }
 }
 
-/// A sensitivity of a step before: that to the logarithm of a value changes least, so that to the value goes with its inverse.
+/// A sensitivity before a multiplied step: that to the logarithm of a value changes least, so that to the value goes with its inverse.
 fn carried(column: &Column, ratio: f64) -> Column {
     if ratio == 1.0 {
         return column.clone();

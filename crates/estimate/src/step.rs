@@ -24,6 +24,8 @@ pub(crate) struct Next {
     pub(crate) theta: Vec<f64>,
     pub(crate) objective: f64,
     pub(crate) probe: Probe,
+    /// Whether sizes and factors were multiplied.
+    pub(crate) is_multiplied: bool,
 }
 
 /// Where steps are searched.
@@ -70,7 +72,11 @@ impl Line<'_> {
                     _ => multiplied(layout, theta, &step),
                 };
                 layout.make_physical(&mut next);
-                Some((damping, next))
+                Some(Trial {
+                    damping,
+                    theta: next,
+                    is_multiplied: trial % 2 == 1,
+                })
             });
             let first = (tried == 0).then_some(&along);
             if let Some((used, next)) = self.first_better(objective, trials.collect(), first) {
@@ -87,38 +93,48 @@ impl Line<'_> {
     fn first_better(
         &self,
         objective: f64,
-        trials: Vec<(f64, Vec<f64>)>,
+        trials: Vec<Trial>,
         along: Option<&impl Fn(usize, usize) -> bool>,
     ) -> Option<(f64, Next)> {
         let (problem, layout) = (self.merit.problem, self.layout);
-        let (dampings, thetas): (Vec<f64>, Vec<Vec<f64>>) = trials.into_iter().unzip();
         let all: Vec<Result<Probe, EstimateError>> = match along {
             Some(along) => {
-                let each = thetas.iter();
-                each.map(|theta| probe(problem, layout, theta, along))
+                let each = trials.iter();
+                each.map(|trial| probe(problem, layout, &trial.theta, along))
                     .collect()
             }
-            None => discrepancies_of(problem, layout, &thetas)
-                .into_iter()
-                .map(|signals| Ok(Probe::new(layout, signals?)))
-                .collect(),
+            None => {
+                let thetas: Vec<Vec<f64>> = trials.iter().map(|t| t.theta.clone()).collect();
+                discrepancies_of(problem, layout, &thetas)
+                    .into_iter()
+                    .map(|signals| Ok(Probe::new(layout, signals?)))
+                    .collect()
+            }
         };
-        for ((damping, theta), probe) in dampings.into_iter().zip(thetas).zip(all) {
+        for (trial, probe) in trials.into_iter().zip(all) {
             let Ok(probe) = probe else {
                 continue;
             };
-            let (value, _) = self.merit.of(layout, &theta, &probe.discrepancy);
+            let (value, _) = self.merit.of(layout, &trial.theta, &probe.discrepancy);
             if value < objective {
                 let next = Next {
-                    theta,
+                    theta: trial.theta,
                     objective: value,
                     probe,
+                    is_multiplied: trial.is_multiplied,
                 };
-                return Some((damping, next));
+                return Some((trial.damping, next));
             }
         }
         None
     }
+}
+
+/// A point that is tried.
+struct Trial {
+    damping: f64,
+    theta: Vec<f64>,
+    is_multiplied: bool,
 }
 
 /// A packed vector a step further, in units of the scales.

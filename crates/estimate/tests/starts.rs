@@ -315,18 +315,12 @@ fn verify_a_fit_follows_what_changes_in_proportion() {
         placed("damping_error", between("block", "ground"), &[gain]),
         placed("input_gain", Location::Input("u".into()), &[gain]),
     ];
-    let search = FitOptions {
-        keep_nuisance: true,
-        most_steps: 10,
-        converged: 0.1,
-        ..FitOptions::white(2)
-    };
     let start = start(
         vec![placed("sensor_gain", sensor, &[1.0])],
         nominal.to_vec(),
         &[0.0, 0.0],
     );
-    let fit = fit(&problem(&model, run), &start, &search).unwrap();
+    let fit = fit(&problem(&model, run), &start, &FitOptions::white(2)).unwrap();
     let found = fit.estimate.effects[0].values[0];
     // As well as the model states its parameters, half of 2 % each.
     assert!((found / gain - 1.0).abs() < 0.02, "{found}");

@@ -9,8 +9,8 @@
 //! the best set: each effect removed, exchanged, grown, shrunk; one more added; rescaled; until it stays
 //! ```
 //!
-//! A stage is left out where the best set leaves nothing but noise, or next to nothing of the gap, and no candidate promises to be
-//! worth a name: its score pays for its prior and for the values that it adjusts, it moves an output by enough, and a fit
+//! A stage is left out where the best set leaves nothing but noise, or, if it is one of wrong parameters, next to nothing of the gap, and
+//! no candidate promises to be worth a name: its score pays for its prior and for the values that it adjusts, it moves an output by enough, and a fit
 //! keeps it.
 
 use std::collections::BTreeSet;
@@ -172,8 +172,9 @@ impl<'a> Search<'a> {
             noise,
             std: self.problem.output_std(),
         };
-        let leaves_little =
-            gap.left(&best.fit.variance) <= RELEVANT_SHARE && !best.effects().is_empty();
+        // Of a law that leaves little, another may leave less; a wrong parameter that does is the plainest cause.
+        let are_parameters = !best.effects().is_empty() && best.effects().iter().all(is_nominal);
+        let leaves_little = are_parameters && gap.left(&best.fit.variance) <= RELEVANT_SHARE;
         Ok((leaves_little || leaves_noise) && !self.is_promising(best)?)
     }
 
