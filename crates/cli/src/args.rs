@@ -129,7 +129,7 @@ pub(crate) struct DemoArgs {
 pub(crate) struct EffectsArgs {
     /// Kind to explain, such as coulomb_friction; without one all are listed.
     pub(crate) kind: Option<String>,
-    /// Model file whose own laws (`[[law]]`) are listed too.
+    /// Model file; the laws that it holds are listed too.
     #[arg(long, value_name = "MODEL")]
     pub(crate) model: Option<PathBuf>,
     /// What is printed.
