@@ -58,24 +58,27 @@ impl Line<'_> {
             .collect();
         // One trial is mostly enough; where it is not, further ones cost little side by side.
         let together = (LANES / self.merit.problem.runs.len().max(1)).max(1);
-        let most = 2 * MOST_DAMPINGS;
+        // Without sizes a multiplied step is the straight one.
+        let ways = 1 + usize::from(layout.is_size.contains(&true));
+        let most = ways * MOST_DAMPINGS;
         let mut tried = 0;
         while tried < most {
             let count = if tried == 0 { 1 } else { together };
             let count = count.min(most - tried);
             let trials = (tried..tried + count).filter_map(|trial| {
                 // Every damping along a line first, then along a curve.
-                let damping = *damping * 10f64.powi((trial / 2) as i32);
+                let damping = *damping * 10f64.powi((trial / ways) as i32);
                 let step = damped_step(&hessian, &gradient, &free, damping)?;
-                let mut next = match trial % 2 {
-                    0 => moved(layout, theta, &step),
-                    _ => multiplied(layout, theta, &step),
+                let is_multiplied = trial % ways == 1;
+                let mut next = match is_multiplied {
+                    false => moved(layout, theta, &step),
+                    true => multiplied(layout, theta, &step),
                 };
                 layout.make_physical(&mut next);
                 Some(Trial {
                     damping,
                     theta: next,
-                    is_multiplied: trial % 2 == 1,
+                    is_multiplied,
                 })
             });
             let first = (tried == 0).then_some(&along);

@@ -6,7 +6,7 @@ use std::collections::btree_map::Entry;
 
 use simgap_estimate::EstimateError;
 
-use crate::candidate_model::{CandidateModel, by_rank, name, rank, remove};
+use crate::candidate_model::{CandidateModel, by_rank, keep, name, rank};
 use crate::search::Search;
 
 /// Sets, and of each whether all its effects are relevant, once it was asked.
@@ -67,10 +67,7 @@ impl Asked {
         if let Some(&known) = self.places.get(&key) {
             return Ok(Cow::Borrowed(&self.sets[known]));
         }
-        let mut start = set.fit.estimate.clone();
-        for i in (0..set.effects().len()).rev().filter(|i| !part.contains(i)) {
-            start = remove(&start, i, search.nominal);
-        }
+        let start = keep(&set.fit.estimate, |i| part.contains(&i), search.nominal);
         search.fit(&start).map(Cow::Owned)
     }
 }

@@ -134,6 +134,15 @@ pub(crate) fn remove(start: &Start, index: usize, nominal: NominalPrior) -> Star
     next
 }
 
+/// A start without the effects that are not kept, by their places.
+pub(crate) fn keep(start: &Start, kept: impl Fn(usize) -> bool, nominal: NominalPrior) -> Start {
+    let mut next = start.clone();
+    for i in (0..start.effects.len()).rev().filter(|i| !kept(*i)) {
+        next = remove(&next, i, nominal);
+    }
+    next
+}
+
 /// A start with another effect in the place of one of its own.
 pub(crate) fn replace(start: &Start, index: usize, effect: Placed, nominal: NominalPrior) -> Start {
     let mut next = remove(start, index, nominal);

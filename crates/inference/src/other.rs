@@ -15,7 +15,7 @@ use simgap_effects::{Effect, Placed, free_laws, sites};
 use simgap_estimate::{Candidate, EstimateError, Fit, linearise_at, score};
 use simgap_model::Location;
 
-use crate::candidate_model::{CandidateModel, add, remove};
+use crate::candidate_model::{CandidateModel, add, keep};
 use crate::coincidence::{Coincidence, coincidence};
 use crate::gap::{Gap, RELEVANT_SHARE};
 use crate::search::Search;
@@ -92,15 +92,12 @@ fn is_of_the_main_cause(
     best: &CandidateModel,
     gap: &Gap,
 ) -> Result<bool, EstimateError> {
-    let mut start = best.fit.estimate.clone();
-    for i in (0..best.effects().len()).rev() {
+    let others = |i: usize| {
         let placed = &best.effects()[i];
         let mut effects = found.effects.iter();
-        if effects.any(|(kind, at)| *kind == placed.effect.kind() && *at == placed.at) {
-            start = remove(&start, i, search.nominal);
-        }
-    }
-    let without = search.fit(&start)?;
+        effects.all(|(kind, at)| *kind != placed.effect.kind() || *at != placed.at)
+    };
+    let without = search.fit(&keep(&best.fit.estimate, others, search.nominal))?;
     Ok(gap.left(&without.fit.variance) > RELEVANT_SHARE)
 }
 

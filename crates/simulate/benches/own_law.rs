@@ -1,20 +1,16 @@
 //! Laws of the user's beside the laws of the catalogue that say the same, 60 s of one mass at 1 kHz.
 //!
 //! `cargo bench -p simgap-simulate --bench own_law`; the items counted are samples times sets. What a law as text costs beside
-//! the compiled one is printed first: the two take turns in one run, so that whatever else the machine does meets both, and the
-//! shortest time of each counts.
+//! the compiled one is printed first ([`turns`]).
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
-use std::f64::consts::TAU;
-use std::time::{Duration, Instant};
+mod turns;
 
 use divan::counter::ItemsCount;
 use simgap_effects::{Placed, find_of};
 use simgap_model::{Law, LawParameter, Location, Model};
-use simgap_simulate::{Job, Mended, Run, Simulator, predict_all};
-
-const SAMPLES: usize = 60_000;
-const STEP_S: f64 = 1e-3;
+use simgap_simulate::{Simulator, predict_all};
+use turns::{SAMPLES, jobs, nanoseconds, run};
 
 const MASS: &str = r#"schema = "simgap-model/1"
 name = "mass"
@@ -69,22 +65,8 @@ const PAIRS: [Pair; 3] = [
     },
 ];
 
-fn run() -> Run {
-    let wave = |k: usize| {
-        let t = STEP_S * k as f64;
-        12.0 * ((TAU * 1.3 * t).sin() + 0.5 * (TAU * 4.1 * t).sin())
-    };
-    Run {
-        name: "made here".into(),
-        start_s: 0.0,
-        time_step_s: STEP_S,
-        len: SAMPLES,
-        first_index: 0,
-        inputs: vec![(0..SAMPLES).map(wave).collect()],
-        measured: vec![None],
-        mended: Mended::default(),
-    }
-}
+/// N.
+const AMPLITUDE: f64 = 12.0;
 
 /// Sets whose values are off by some per cent.
 fn sets(pair: Pair, is_text: bool, count: usize) -> Vec<Simulator> {
@@ -110,33 +92,12 @@ fn sets(pair: Pair, is_text: bool, count: usize) -> Vec<Simulator> {
     (0..count).map(set).collect()
 }
 
-fn jobs<'a>(sets: &'a [Simulator], run: &'a Run) -> Vec<Job<'a>> {
-    let job = |simulator| Job {
-        simulator,
-        run,
-        initial: &[],
-        smooth: false,
-    };
-    sets.iter().map(job).collect()
-}
-
-/// Rounds of the comparison, in each of which both laws are simulated once.
-const ROUNDS: usize = 15;
-
 fn compared() {
-    let run = run();
+    let run = run(AMPLITUDE);
     for pair in PAIRS {
         for count in [1, 8] {
             let both = [false, true].map(|is_text| sets(pair, is_text, count));
-            let mut least = [Duration::MAX; 2];
-            for _ in 0..ROUNDS {
-                for (sets, least) in both.iter().zip(&mut least) {
-                    let begun = Instant::now();
-                    divan::black_box(predict_all(&jobs(sets, &run)));
-                    *least = (*least).min(begun.elapsed());
-                }
-            }
-            let ns = least.map(|time| time.as_secs_f64() * 1e9 / (SAMPLES * count) as f64);
+            let ns = nanoseconds([0, 1].map(|k| (&both[k][..], &run)));
             println!(
                 "{count} set(s), {}: {:.1} ns per sample and set, as text {:.1} ns, {:.2} times",
                 pair.kind,
@@ -150,7 +111,7 @@ fn compared() {
 
 #[divan::bench(args = [false, true], consts = [1, 8], sample_count = 10)]
 fn quadratic<const SETS: usize>(bencher: divan::Bencher<'_, '_>, is_text: bool) {
-    let (run, sets) = (run(), sets(PAIRS[0], is_text, SETS));
+    let (run, sets) = (run(AMPLITUDE), sets(PAIRS[0], is_text, SETS));
     let jobs = jobs(&sets, &run);
     bencher
         .counter(ItemsCount::new(SAMPLES * SETS))

@@ -4,20 +4,16 @@
 //! a spool, a filter of second order on the measured position and a controller of second order; both orifices are solved in every
 //! step. The two masses are linear, or have dry friction and a cubic spring.
 //!
-//! What the axis costs beside the others is printed first: the plants take turns in one run, so that whatever else the
-//! machine does meets all of them, and the shortest time of each counts.
+//! What the axis costs beside the others is printed first ([`turns`]).
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
-use std::f64::consts::TAU;
-use std::time::{Duration, Instant};
+mod turns;
 
 use divan::counter::ItemsCount;
 use simgap_effects::{Placed, find};
 use simgap_model::{Location, Model};
-use simgap_simulate::{Job, Mended, Run, Simulator, predict_all};
-
-const SAMPLES: usize = 60_000;
-const STEP_S: f64 = 1e-3;
+use simgap_simulate::{Simulator, predict_all};
+use turns::{SAMPLES, jobs, nanoseconds, run};
 
 const AXIS: &str = r#"schema = "simgap-model/1"
 name = "axis"
@@ -110,23 +106,6 @@ enum Plant {
 
 use Plant::{ServoAxis, TwoMasses, TwoMassesFrictionAndCubic};
 
-fn run(amplitude: f64) -> Run {
-    let wave = |k: usize| {
-        let t = STEP_S * k as f64;
-        amplitude * ((TAU * 1.3 * t).sin() + 0.5 * (TAU * 4.1 * t).sin())
-    };
-    Run {
-        name: "made here".into(),
-        start_s: 0.0,
-        time_step_s: STEP_S,
-        len: SAMPLES,
-        first_index: 0,
-        inputs: vec![(0..SAMPLES).map(wave).collect()],
-        measured: vec![None],
-        mended: Mended::default(),
-    }
-}
-
 /// A set whose values are off by some per cent.
 fn set(plant: Plant, share: f64) -> Simulator {
     let size = 1.0 + 0.05 * share;
@@ -161,9 +140,6 @@ fn amplitude(plant: Plant) -> f64 {
     }
 }
 
-/// Rounds of the comparison, in each of which every plant is simulated once.
-const ROUNDS: usize = 15;
-
 /// Prints what each plant costs per sample and set, and the axis over the others, for one set and for eight in lanes.
 fn compared() {
     let plants = [TwoMasses, TwoMassesFrictionAndCubic, ServoAxis];
@@ -174,22 +150,7 @@ fn compared() {
                 .map(|k| set(plant, k as f64 / count as f64))
                 .collect()
         });
-        let mut least = [Duration::MAX; 3];
-        for _ in 0..ROUNDS {
-            for (k, least) in least.iter_mut().enumerate() {
-                let job = |simulator| Job {
-                    simulator,
-                    run: &runs[k],
-                    initial: &[],
-                    smooth: false,
-                };
-                let jobs: Vec<Job<'_>> = sets[k].iter().map(job).collect();
-                let begun = Instant::now();
-                divan::black_box(predict_all(&jobs));
-                *least = (*least).min(begun.elapsed());
-            }
-        }
-        let ns = least.map(|time| time.as_secs_f64() * 1e9 / (SAMPLES * count) as f64);
+        let ns = nanoseconds([0, 1, 2].map(|k| (&sets[k][..], &runs[k])));
         for (plant, ns) in plants.iter().zip(ns) {
             println!("{count} set(s), {plant:?}: {ns:.1} ns per sample and set");
         }
@@ -207,13 +168,7 @@ fn sets<const SETS: usize>(bencher: divan::Bencher<'_, '_>, plant: Plant) {
     let sets: Vec<Simulator> = (0..SETS)
         .map(|k| set(plant, k as f64 / SETS as f64))
         .collect();
-    let job = |simulator| Job {
-        simulator,
-        run: &run,
-        initial: &[],
-        smooth: false,
-    };
-    let jobs: Vec<Job<'_>> = sets.iter().map(job).collect();
+    let jobs = jobs(&sets, &run);
     bencher
         .counter(ItemsCount::new(SAMPLES * SETS))
         .bench_local(|| predict_all(&jobs));

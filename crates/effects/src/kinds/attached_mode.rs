@@ -30,6 +30,11 @@ const MOST_OCTAVES: i32 = 10;
 /// Masses over that of the host that a force at one frequency may come from.
 const HEAVIER: [f64; 3] = [0.1, 1.0, 10.0];
 
+/// Damping ratio of a mode that rings on through the longest record, T: ζ = 1 / (ω T).
+pub(super) fn rings_on(scale: &SiteScale, freq: f64) -> f64 {
+    1.0 / (TAU * freq * scale.duration_s)
+}
+
 pub(super) fn unused_name(model: &Model, stem: &str) -> String {
     let taken = |name: &str| model.masses.iter().any(|mass| mass.name == name);
     let mut name = stem.to_string();
@@ -183,8 +188,7 @@ impl Effect for AttachedMode {
         &["flexible_support", "harmonic_force"]
     }
 
-    /// A factor q on the host is a mass m (q − 1) that moves with it. A force at one frequency is a mass that rings on through the
-    /// longest record, T: ζ = 1 / (ω T). A support of stiffness kₛ and mass mₛ behind
+    /// A factor q on the host is a mass m (q − 1) that moves with it. A force at one frequency is a mass that rings on ([`rings_on`]). A support of stiffness kₛ and mass mₛ behind
     /// a spring k is a softer spring and a hidden mass: kₐ = k² / (k + kₛ), ω² = (k + kₛ) / mₛ.
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         if kind == "flexible_support" {
@@ -198,7 +202,7 @@ impl Effect for AttachedMode {
         }
         if kind == "harmonic_force" {
             let freq = values[1];
-            let ratio = 1.0 / (TAU * freq * scale.duration_s);
+            let ratio = rings_on(scale, freq);
             let masses = HEAVIER.map(|heavier| heavier * scale.mass_kg);
             return masses.map(|mass| vec![mass, freq, ratio, 0.0, 0.0]).into();
         }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Damper, GROUND, Location, Mass, Model, OutputKind, Spring, same_pair};
 
-use super::attached_mode::{octaves, unused_name};
+use super::attached_mode::{octaves, rings_on, unused_name};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// What the model takes for the ground gives way: the springs and dampers between a mass and the
@@ -25,6 +25,12 @@ pub(crate) struct FlexibleSupport;
 const NAME: &str = "(support)";
 /// Stiffnesses over that of the spring on it that a support is looked for with.
 const STIFFER: [f64; 2] = [3.0, 15.0];
+
+/// A support of a stiffness whose own mode, with the spring on it, is at a frequency.
+fn with_mode_at(freq: f64, scale: &SiteScale, stiffness: f64, damping_ratio: f64) -> Vec<f64> {
+    let mass = (stiffness + scale.stiffness_n_per_m) / (TAU * freq).powi(2);
+    vec![stiffness, mass, damping_ratio, 0.0, 0.0]
+}
 
 fn stand(model: &mut Model, at: &Location, [mass, stiffness, damping_ratio]: [f64; 3]) {
     let Location::Between(pair) = at else {
@@ -134,10 +140,9 @@ impl Effect for FlexibleSupport {
             }
             // A support whose own mode is at a line that the model leaves.
             for freq in scale.lines_hz.into_iter().take(2).filter(|f| *f > 0.0) {
-                let mass = (stiffness + scale.stiffness_n_per_m) / (TAU * freq).powi(2);
-                // It dies away at once, or rings on through the longest record.
-                for ratio in [0.05, 1.0 / (TAU * freq * scale.duration_s)] {
-                    starts.push(vec![stiffness, mass, ratio, 0.0, 0.0]);
+                // It dies away at once, or rings on.
+                for ratio in [0.05, rings_on(scale, freq)] {
+                    starts.push(with_mode_at(freq, scale, stiffness, ratio));
                 }
             }
         }
@@ -155,7 +160,7 @@ impl Effect for FlexibleSupport {
     /// A massless support of stiffness k q/(1 − q) behind a spring and a damper is a factor q on the
     /// spring and, well below where the damper is stiffer than the spring, q² on the damper. A hidden mass of
     /// stiffness kₐ < k on the host is a support and a stiffer spring: kₛ = k² / kₐ − k, mₛ = (k + kₛ) / ω². A force at one
-    /// frequency is a support that rings on through the longest record, T: ζ = 1 / (ω T).
+    /// frequency is a support that rings on ([`rings_on`]).
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         if kind == "attached_mode" {
             let (own, omega) = (scale.stiffness_n_per_m, TAU * values[1]);
@@ -174,13 +179,9 @@ impl Effect for FlexibleSupport {
             ]];
         }
         if kind == "harmonic_force" {
-            let omega = TAU * values[1];
-            let ratio = 1.0 / (omega * scale.duration_s);
+            let (freq, ratio) = (values[1], rings_on(scale, values[1]));
             let stiffnesses = STIFFER.map(|stiffer| stiffer * scale.stiffness_n_per_m);
-            let support = |stiffness: f64| {
-                let mass = (stiffness + scale.stiffness_n_per_m) / (omega * omega);
-                vec![stiffness, mass, ratio, 0.0, 0.0]
-            };
+            let support = |stiffness: f64| with_mode_at(freq, scale, stiffness, ratio);
             return stiffnesses.map(support).into();
         }
         let factor = match kind {

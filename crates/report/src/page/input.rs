@@ -1,6 +1,7 @@
 //! What a page tells of.
 
 use simgap_diagnose::{CheckSeries, Diagnosis, PlaceMotion};
+use simgap_effects::{Effect, find, find_of};
 use simgap_model::Model;
 
 /// What a page says about where it comes from.
@@ -36,4 +37,12 @@ pub struct ReportInput<'a> {
     pub corrected: Option<&'a Model>,
     /// Where the page comes from.
     pub context: &'a ReportContext,
+}
+
+impl ReportInput<'_> {
+    /// The effect of a kind: of the catalogue, or a law of the model if there is one.
+    pub(super) fn effect(&self, kind: &str) -> Option<&'static dyn Effect> {
+        let model = self.nominal.or(self.corrected);
+        model.map_or_else(|| find(kind), |model| find_of(model, kind))
+    }
 }

@@ -2,7 +2,7 @@
 //! the motion of the check records, against the time between samples.
 
 use simgap_diagnose::{NamedEffect, NamedParameter, PlaceMotion};
-use simgap_effects::{Parameter, find, find_of};
+use simgap_effects::Parameter;
 use simgap_model::{Location, same_pair};
 
 use super::ReportInput;
@@ -29,9 +29,9 @@ pub(super) fn sense(
     parameter: &NamedParameter,
     input: &ReportInput<'_>,
 ) -> String {
-    let model = input.nominal.or(input.corrected);
-    let known = model.map_or_else(|| find(&effect.kind), |model| find_of(model, &effect.kind));
-    let law = known.and_then(|e| e.parameters().iter().find(|p| p.name == parameter.name));
+    let law = input
+        .effect(&effect.kind)
+        .and_then(|e| e.parameters().iter().find(|p| p.name == parameter.name));
     let mut out = Vec::new();
     let value = parameter.value;
     if parameter.name.ends_with("factor") && value.is_finite() {

@@ -1,7 +1,6 @@
 //! The corrected values with their intervals, and what they mean for the machine.
 
 use simgap_diagnose::{Diagnosis, NamedEffect, Status};
-use simgap_effects::{find, find_of};
 use simgap_model::{Location, Model};
 
 use super::ReportInput;
@@ -50,9 +49,7 @@ fn about_changes(diagnosis: &Diagnosis) -> String {
 }
 
 fn effect_values(html: &mut Html, effect: &NamedEffect, input: &ReportInput<'_>) {
-    let model = input.nominal.or(input.corrected);
-    let known = model.map_or_else(|| find(&effect.kind), |model| find_of(model, &effect.kind));
-    if let Some(known) = known {
+    if let Some(known) = input.effect(&effect.kind) {
         html.element("p", &[], &crate::wording::sentence(known.summary()));
     }
     if effect.parameters.is_empty() {
