@@ -98,7 +98,7 @@ fn small_errors(
         .map(|p| search.problem.stated_std(p))
         .collect();
     let widest = stated.iter().copied().fold(0.0, f64::max);
-    let parameters = search.of_stated_parameters(widest);
+    let mut parameters = search.of_stated_parameters(widest);
     let exact = parameters.fit(&Start {
         nominal: vec![],
         ..first.clone()

@@ -130,11 +130,7 @@ pub fn diagnose<R: Borrow<Record>>(
     let base = search.fit(&start)?;
     let pool = search.run(&base)?;
     // The colour of what the set leaves that leaves least, once and for all sets.
-    let least = pool
-        .iter()
-        .min_by(|a, b| a.fit.misfit.total_cmp(&b.fit.misfit));
-    let noise = noise.with_colour_of(&least.unwrap_or(&base).fit);
-    let mut pool = search.refit(&pool, &noise);
+    let mut pool = search.recolour(&pool);
     search.refine(&mut pool)?;
     // Sets that failed are left out of the pool, those of cancelled work too.
     request.cancel.check()?;

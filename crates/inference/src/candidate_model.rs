@@ -151,6 +151,9 @@ pub(crate) fn replace(start: &Start, index: usize, effect: Placed, nominal: Nomi
     next
 }
 
+/// Log odds within which two sets cannot be told apart: one to twenty. Nor can their effects, nor an effect from none.
+pub(crate) const INDISTINGUISHABLE: f64 = 3.0;
+
 /// Deviation of the nominal parameters from which on they are bent: four standard deviations of one of them, say.
 const BENT: f64 = 8.0;
 

@@ -7,13 +7,15 @@
 //!
 //! A set is a candidate only if each of its effects closes a share of the gap that is worth a name (*practical
 //! relevance*): what closes less belongs to the smaller set. Effects that can be exchanged within the stated odds cannot
-//! be told apart.
+//! be told apart; an effect that can be left out within them cannot be told from none, and is not named.
 
 use simgap_effects::{Equivalent, Placed, same_place};
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
 use crate::asked::Asked;
-use crate::candidate_model::{CandidateModel, is_bent, is_nominal, name, rank, remove};
+use crate::candidate_model::{
+    CandidateModel, INDISTINGUISHABLE, is_bent, is_nominal, name, rank, remove,
+};
 use crate::gap::RELEVANT_SHARE;
 use crate::motion;
 use crate::noise_model::NOISE_KNOWN;
@@ -24,8 +26,6 @@ use crate::shapley::shapley_values;
 /// name, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
 /// expected to explain; nor one beside others that explains less than this share of what is left above the noise, mean square.
 const OF_REST: f64 = 0.5;
-/// Log odds within which effects cannot be told apart: one to twenty.
-const INDISTINGUISHABLE: f64 = 3.0;
 /// Log odds beyond which a set does not count.
 const NEGLIGIBLE: f64 = 12.0;
 
@@ -153,23 +153,29 @@ impl Relevance {
         without: &CandidateModel,
         moved: &[f64],
     ) -> bool {
+        // Of two sets that cannot be told apart the smaller is the answer.
+        if with.log_posterior() - without.log_posterior() < INDISTINGUISHABLE {
+            return false;
+        }
         // Nominal parameters that are bent to stand for the effect do what it does.
         if is_bent(without) && !is_bent(with) {
             return true;
         }
-        let moves = motion::is_enough(moved, &self.motion);
+        // What comes late in one channel may show in another: where records begin follows the late one.
+        if !motion::is_enough(moved, &self.motion).any(|enough| enough) {
+            return false;
+        }
         let noise = search
             .noise_of(with)
             .into_iter()
             .zip(search.unexplainable(without));
         let left = without.fit.variance.iter().zip(noise);
         let channels = closed(with, without).zip(left);
-        let mut channels = channels.zip(self.gap.iter().zip(moves));
+        let mut channels = channels.zip(&self.gap);
         let is_first = without.effects().is_empty();
-        channels.any(|((closed, (left, (noise, floor))), (gap, moves))| {
+        channels.any(|((closed, (left, (noise, floor))), gap)| {
             let stands_out = *left > NOISE_KNOWN * floor;
             stands_out
-                && moves
                 && closed > (RELEVANT_SHARE * gap).powi(2)
                 && (is_first || closed > OF_REST * (left - noise))
         })

@@ -66,6 +66,7 @@ pub struct Budget<'a> {
 pub struct Search<'a> {
     /// What is searched in.
     pub problem: &'a Problem,
+    pub(crate) noise: NoiseModel,
     /// How sets are fitted.
     pub options: FitOptions,
     /// What there is.
@@ -86,6 +87,7 @@ impl<'a> Search<'a> {
     ) -> Search<'a> {
         Search {
             problem,
+            noise: noise.clone(),
             options: noise.search_options(),
             space,
             nominal: NominalPrior::Wrong,
@@ -98,6 +100,7 @@ impl<'a> Search<'a> {
     pub fn of_stated_parameters(&self, stated_std: f64) -> Search<'a> {
         Search {
             problem: self.problem,
+            noise: self.noise.clone(),
             options: self.options.clone(),
             space: self
                 .space
@@ -124,10 +127,23 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The sets of a ranked pool, fitted again under another noise model: the best of them, and of each effect the best
-    /// sets of every size that hold it.
-    pub fn refit(&mut self, pool: &[CandidateModel], noise: &NoiseModel) -> Vec<CandidateModel> {
+    /// The noise with the colour of what the set of a pool leaves that leaves least.
+    fn colour_of(&self, pool: &[CandidateModel]) -> NoiseModel {
+        let least = pool
+            .iter()
+            .min_by(|a, b| a.fit.misfit.total_cmp(&b.fit.misfit));
+        least.map_or_else(
+            || self.noise.clone(),
+            |least| self.noise.with_colour_of(&least.fit),
+        )
+    }
+
+    /// The sets of a ranked pool, fitted again with the colour of what the set leaves that leaves least: the best of them, and of each
+    /// effect the best sets of every size that hold it.
+    pub fn recolour(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
+        let noise = self.colour_of(pool);
         self.options = noise.search_options();
+        self.noise = noise;
         let mut seen = BTreeSet::new();
         let again = pool.iter().enumerate().filter(|(i, set)| {
             let size = set.effects().len();
@@ -242,7 +258,7 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
-    pub fn run(&self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
+    pub fn run(&mut self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
         let step = self.budget.progress;
         let mut pool = vec![base.clone()];
         if self.is_settled(&pool, base)? {
@@ -255,6 +271,25 @@ impl<'a> Search<'a> {
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
         rank(&mut pool);
+        // Under the colour of a slow effect that no set holds yet, records have fewer independent samples than sets have values.
+        if !self.colour_of(&pool).is_of_the_colour_of(&self.noise) {
+            pool = self.recolour(&pool);
+        }
+        match pool.iter().find(|set| set.effects().is_empty()).cloned() {
+            Some(base) => self.run_on(&base, recalibrated, pool),
+            None => Ok(pool),
+        }
+    }
+
+    /// Goes on from single effects, found by their score.
+    fn run_on(
+        &self,
+        base: &CandidateModel,
+        recalibrated: Option<CandidateModel>,
+        mut pool: Vec<CandidateModel>,
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        let step = self.budget.progress;
+        let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         if !self.is_settled(&pool, base)? {
             step("single effects from many values");
             pool.extend(self.multistart(base, &linear)?);

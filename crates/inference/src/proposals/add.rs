@@ -10,7 +10,7 @@ use simgap_estimate::{
 use simgap_model::Location;
 
 use crate::candidate_model::{
-    CandidateModel, add_scored, is_nominal, is_of, name, prior_score, rank,
+    CandidateModel, INDISTINGUISHABLE, add_scored, is_nominal, is_of, name, prior_score, rank,
 };
 use crate::motion;
 use crate::search::Search;
@@ -87,7 +87,7 @@ impl Search<'_> {
             let fitted = self.fit_steps(&[start], &linear, self.options.most_steps);
             if fitted
                 .iter()
-                .any(|with| with.log_posterior() > set.log_posterior())
+                .any(|with| with.log_posterior() > set.log_posterior() + INDISTINGUISHABLE)
             {
                 return Ok(true);
             }

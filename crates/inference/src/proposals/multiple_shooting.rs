@@ -92,6 +92,7 @@ impl Search<'_> {
         let problem = &cut.apply(self.problem);
         let parameters = fit(problem, begun, options)?;
         let search = Search {
+            noise: self.noise.clone(),
             problem,
             options: options.clone(),
             space: self.laws_in(problem, &parameters)?,

@@ -46,6 +46,7 @@ impl Search<'_> {
         recalibrated: &CandidateModel,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let wide = Search {
+            noise: self.noise.clone(),
             options: self.wide_options(),
             space: self
                 .space
