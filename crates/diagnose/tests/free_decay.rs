@@ -1,0 +1,135 @@
+//! Records without an input: a plant that is let go and rings down.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use simgap_diagnose::{Outcome, Request, Status, diagnose};
+use simgap_effects::{Placed, find};
+use simgap_model::{Location, Model};
+use simgap_record::{Channel, Record};
+use simgap_simulate::{Run, Simulator};
+
+const STEP_S: f64 = 2e-3;
+const ROWS: usize = 2000;
+
+const PLANT: &str = r#"schema = "simgap-model/1"
+name = "beam with a tip"
+[[mass]]
+name = "beam"
+value = 5.0
+[[mass]]
+name = "tip"
+value = 2.5
+[[spring]]
+name = "k1"
+between = ["beam", "ground"]
+stiffness = 30000.0
+[[spring]]
+name = "k2"
+between = ["tip", "beam"]
+stiffness = 28000.0
+[[damper]]
+name = "c1"
+between = ["beam", "ground"]
+damping = 4.0
+[[damper]]
+name = "c2"
+between = ["tip", "beam"]
+damping = 4.0
+[[output]]
+channel = "a"
+kind = "acceleration"
+at = "tip"
+[[output]]
+channel = "x"
+kind = "displacement"
+at = "beam"
+"#;
+
+fn placed(kind: &str, at: Location, value: f64) -> Placed {
+    Placed::new(find(kind).unwrap(), at, vec![value])
+}
+
+/// Kinds and places that are named.
+fn named(outcome: &Outcome) -> Vec<(String, Location)> {
+    let effects = outcome.diagnosis.verdict.effects.iter();
+    effects.map(|e| (e.kind.clone(), e.at.clone())).collect()
+}
+
+/// About normal numbers of zero mean and unit variance: twelve draws of a linear congruence each.
+fn noise(word: &mut u64) -> f64 {
+    let draw = |_| {
+        *word = word
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (*word >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..12).map(draw).sum::<f64>() - 6.0
+}
+
+/// A record of a plant with effects, let go from a state of its own: its channels have noise of their resolution and are
+/// stored in steps of it.
+fn record(model: &Model, effects: &[Placed], number: usize, resolution: [f64; 2]) -> Record {
+    let run = Run {
+        name: format!("{number}.csv"),
+        start_s: 0.0,
+        time_step_s: STEP_S,
+        len: ROWS,
+        first_index: 0,
+        inputs: vec![],
+        measured: vec![],
+        mended: simgap_simulate::Mended::default(),
+    };
+    let simulator = Simulator::new(model, effects, 1).unwrap();
+    let tip = [0.03, 0.02, -0.025][number];
+    let mut state = vec![0.0; simulator.state_len()];
+    (state[0], state[1]) = (0.5 * tip, tip);
+    let outputs = simulator.predict(&run, &state).unwrap();
+    let mut word = number as u64;
+    let channels = outputs.iter().zip(&model.outputs).zip(resolution);
+    let channels = channels.map(|((signal, output), resolution)| {
+        let stored = signal
+            .iter()
+            .map(|y| (y / resolution + noise(&mut word)).round() * resolution);
+        let unit = if output.channel == "a" { "m/s^2" } else { "m" };
+        Channel::new(&output.channel, unit, stored.collect::<Vec<f64>>())
+    });
+    Record::from_uniform(format!("{number}.csv"), 0.0, STEP_S, channels.collect()).unwrap()
+}
+
+fn diagnosed(effects: &[Placed], resolution: [f64; 2]) -> Outcome {
+    let model = Model::from_toml(PLANT).unwrap();
+    let records: Vec<Record> = (0..3)
+        .map(|number| record(&model, effects, number, resolution))
+        .collect();
+    diagnose(&Request::new(&model, &records[..2], &records[2..]), &|_| {}).unwrap()
+}
+
+/// Where a free decay begins follows the channel that tells most of it, so that a delay there shows in the other one. It had no
+/// name: the channel that it moves is not the one in which it closes the gap.
+#[test]
+fn verify_a_delay_is_found_where_it_shows_in_another_channel() {
+    let at = Location::Channel("a".into());
+    let outcome = diagnosed(&[placed("sensor_delay", at.clone(), 3.1e-3)], [1e-3, 1e-7]);
+    let verdict = &outcome.diagnosis.verdict;
+    assert_eq!(
+        named(&outcome),
+        [("sensor_delay".to_string(), at)],
+        "{verdict:?}"
+    );
+    let delay = &verdict.effects[0].parameters[0];
+    assert!((delay.value - 3.1e-3).abs() < 2e-5, "{delay:?}");
+    assert!(verdict.complete, "{verdict:?}");
+}
+
+/// A sensor of a coarse resolution and a damping that is off: what else might be there cannot be told from nothing.
+#[test]
+fn verify_nothing_is_added_to_a_wrong_damping_within_coarse_steps() {
+    let at = Location::Between(["beam".into(), "ground".into()]);
+    let outcome = diagnosed(&[placed("damping_error", at.clone(), 1.8)], [2.0, 1.5e-3]);
+    let verdict = &outcome.diagnosis.verdict;
+    assert_eq!(verdict.status, Status::Parameters, "{verdict:?}");
+    assert_eq!(
+        named(&outcome),
+        [("damping_error".to_string(), at)],
+        "{verdict:?}"
+    );
+}
