@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use simgap_diagnose::audit::audit;
-use simgap_diagnose::{Cancel, CheckSeries, Outcome, Progress, Request, diagnose};
+use simgap_diagnose::{Cancel, CheckSeries, Limit, Outcome, Progress, Request, diagnose};
 use simgap_model::Model;
 use simgap_record::{AuditFinding, AuditTopic, Record};
 use simgap_report::page::{PictureFile, Report, ReportContext, ReportInput, report};
@@ -38,8 +38,8 @@ pub struct Question<'a> {
     pub withheld: &'a [String],
     /// Seed of anything random.
     pub seed: u64,
-    /// Whether the search is to end with the best answer so far.
-    pub is_spent: &'a (dyn Fn() -> bool + Sync),
+    /// What ends the search with the best answer so far.
+    pub limit: Limit<'a>,
     /// The simulator that the model stands for, where it stands for one.
     pub plant: Option<Arc<ExternalPlant>>,
     /// Ends the whole work without an answer.
@@ -135,7 +135,7 @@ impl Question<'_> {
         let (train, check) = (of(self.train), of(self.check));
         let request = Request {
             withheld: self.withheld,
-            is_spent: self.is_spent,
+            limit: self.limit,
             plant: self.plant.clone(),
             cancel: self.cancel.clone(),
             ..Request::new(self.model, &train, &check)

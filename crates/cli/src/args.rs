@@ -75,7 +75,8 @@ pub(crate) struct DiagnoseArgs {
     /// Also writes `sets.json`: every set of effects that was fitted, with the terms that decide between them.
     #[arg(long)]
     pub(crate) sets: bool,
-    /// Seconds after which the search ends with the best answer so far.
+    /// Seconds after which the search ends with the best answer so far; without it the search ends after so much work, the same
+    /// on every machine, about a minute of one core.
     #[arg(long, value_name = "SECONDS")]
     pub(crate) budget: Option<f64>,
     /// Seed of anything random; the diagnosis has nothing random so far.

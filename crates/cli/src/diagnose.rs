@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use simgap_app::diagnosis::{Answer, Question, distinct_stems, known_kinds};
 use simgap_app::input;
-use simgap_diagnose::Cancel;
+use simgap_diagnose::{Cancel, Limit};
 
 use crate::args::{DiagnoseArgs, Format};
 use crate::error::CliError;
@@ -34,10 +34,8 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     };
     let (train, check) = (read(&args.train)?, read(&args.check)?);
     let begun = Instant::now();
-    let is_spent = || {
-        args.budget
-            .is_some_and(|budget| begun.elapsed().as_secs_f64() > budget)
-    };
+    let seconds = args.budget.unwrap_or(f64::INFINITY);
+    let is_over = || begun.elapsed().as_secs_f64() > seconds;
     let question = Question {
         model: &model,
         model_file: Some(&args.model),
@@ -46,7 +44,10 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         records: &options,
         withheld: &args.withhold,
         seed: args.seed,
-        is_spent: &is_spent,
+        limit: match args.budget {
+            Some(_) => Limit::Asked(&is_over),
+            None => Limit::default(),
+        },
         plant: None,
         cancel: Cancel::default(),
     };

@@ -68,6 +68,7 @@ mod error;
 mod excerpt;
 mod final_fit;
 mod gap;
+mod limit;
 mod locate;
 mod multi_step;
 mod outcome;
@@ -82,6 +83,7 @@ mod units;
 
 pub use diagnosis::*;
 pub use error::DiagnoseError;
+pub use limit::Limit;
 pub use outcome::NominalEstimate;
 pub use pipeline::{Outcome, Progress, Request, diagnose};
 pub use sets::{FittedEffect, FittedSet};

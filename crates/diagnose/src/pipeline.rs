@@ -25,6 +25,7 @@ use crate::decide::{Decision, decide};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
 use crate::excerpt::excerpts;
 use crate::final_fit::fit_to_all;
+use crate::limit::Limit;
 use crate::locate::Located;
 use crate::outcome::{NominalEstimate, corrected_model, nominal_estimates, series};
 use crate::prepared::Prepared;
@@ -41,8 +42,8 @@ pub struct Request<'a, R = Record> {
     pub check: &'a [R],
     /// Kinds to take out of the catalogue.
     pub withheld: &'a [String],
-    /// Whether the search is to end; asked between its stages.
-    pub is_spent: &'a (dyn Fn() -> bool + Sync),
+    /// What ends the search with the best answer so far.
+    pub limit: Limit<'a>,
     /// The simulator that the model stands for, where it stands for one ([`Model::is_external`]).
     pub plant: Option<Arc<ExternalPlant>>,
     /// Ends the whole work without an answer.
@@ -50,7 +51,7 @@ pub struct Request<'a, R = Record> {
 }
 
 impl<'a, R: Borrow<Record>> Request<'a, R> {
-    /// A request without withheld kinds and without a limit.
+    /// A request without withheld kinds, with the usual limit.
     #[must_use]
     pub fn new(model: &'a Model, train: &'a [R], check: &'a [R]) -> Request<'a, R> {
         Request {
@@ -58,7 +59,7 @@ impl<'a, R: Borrow<Record>> Request<'a, R> {
             train,
             check,
             withheld: &[],
-            is_spent: &|| false,
+            limit: Limit::default(),
             plant: None,
             cancel: Cancel::default(),
         }
@@ -122,9 +123,12 @@ pub fn diagnose<R: Borrow<Record>>(
     let space = ModelSpace::new(&prepared.excerpt, &baseline, request.withheld)?;
     prepared.excerpt.scales = space.scales();
     prepared.train.scales = space.scales();
+    let effort = prepared.train.effort.clone();
+    let limit = request.limit;
+    let is_spent = || limit.is_reached(&effort);
     let budget = Budget {
         progress,
-        is_spent: request.is_spent,
+        is_spent: &is_spent,
     };
     let mut search = Search::new(&prepared.excerpt, &noise, space, budget);
     let base = search.fit(&start)?;
@@ -132,12 +136,12 @@ pub fn diagnose<R: Borrow<Record>>(
     // The colour of what the set leaves that leaves least, once and for all sets.
     let mut pool = search.recolour(&pool);
     search.refine(&mut pool)?;
+    let stopped_early = is_spent();
     // Sets that failed are left out of the pool, those of cancelled work too.
     request.cancel.check()?;
 
     progress("posterior");
     let decision = decide(&search, pool, &start, &prepared)?;
-    let stopped_early = (request.is_spent)();
 
     request.cancel.check()?;
     progress("final fit");
@@ -265,6 +269,10 @@ fn finish<R: Borrow<Record>>(
     if located.is_hidden {
         let hidden = "the gap hardly stands out of the noise: where it lies is where the noise is";
         notes.push(hidden.into());
+    }
+    if stopped_early {
+        let ended = "the search ended at its limit, before all that was promising was tried";
+        notes.push(ended.into());
     }
     notes.extend(quality_notes(request, data));
     Ok(Outcome {

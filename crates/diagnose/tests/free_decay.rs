@@ -1,7 +1,7 @@
 //! Records without an input: a plant that is let go and rings down.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use simgap_diagnose::{Outcome, Request, Status, diagnose};
+use simgap_diagnose::{Limit, Outcome, Request, Status, diagnose};
 use simgap_effects::{Placed, find};
 use simgap_model::{Location, Model};
 use simgap_record::{Channel, Record};
@@ -95,12 +95,16 @@ fn record(model: &Model, effects: &[Placed], number: usize, resolution: [f64; 2]
     Record::from_uniform(format!("{number}.csv"), 0.0, STEP_S, channels.collect()).unwrap()
 }
 
-fn diagnosed(effects: &[Placed], resolution: [f64; 2]) -> Outcome {
+fn diagnosed(effects: &[Placed], resolution: [f64; 2], limit: Limit<'_>) -> Outcome {
     let model = Model::from_toml(PLANT).unwrap();
     let records: Vec<Record> = (0..3)
         .map(|number| record(&model, effects, number, resolution))
         .collect();
-    diagnose(&Request::new(&model, &records[..2], &records[2..]), &|_| {}).unwrap()
+    let request = Request {
+        limit,
+        ..Request::new(&model, &records[..2], &records[2..])
+    };
+    diagnose(&request, &|_| {}).unwrap()
 }
 
 /// Where a free decay begins follows the channel that tells most of it, so that a delay there shows in the other one. It had no
@@ -108,7 +112,11 @@ fn diagnosed(effects: &[Placed], resolution: [f64; 2]) -> Outcome {
 #[test]
 fn verify_a_delay_is_found_where_it_shows_in_another_channel() {
     let at = Location::Channel("a".into());
-    let outcome = diagnosed(&[placed("sensor_delay", at.clone(), 3.1e-3)], [1e-3, 1e-7]);
+    let outcome = diagnosed(
+        &[placed("sensor_delay", at.clone(), 3.1e-3)],
+        [1e-3, 1e-7],
+        Limit::default(),
+    );
     let verdict = &outcome.diagnosis.verdict;
     assert_eq!(
         named(&outcome),
@@ -124,7 +132,11 @@ fn verify_a_delay_is_found_where_it_shows_in_another_channel() {
 #[test]
 fn verify_nothing_is_added_to_a_wrong_damping_within_coarse_steps() {
     let at = Location::Between(["beam".into(), "ground".into()]);
-    let outcome = diagnosed(&[placed("damping_error", at.clone(), 1.8)], [2.0, 1.5e-3]);
+    let outcome = diagnosed(
+        &[placed("damping_error", at.clone(), 1.8)],
+        [2.0, 1.5e-3],
+        Limit::default(),
+    );
     let verdict = &outcome.diagnosis.verdict;
     assert_eq!(verdict.status, Status::Parameters, "{verdict:?}");
     assert_eq!(
@@ -132,4 +144,21 @@ fn verify_nothing_is_added_to_a_wrong_damping_within_coarse_steps() {
         [("damping_error".to_string(), at)],
         "{verdict:?}"
     );
+}
+
+/// A search that has spent its work ends with what it has, and says so.
+#[test]
+fn verify_a_search_ends_at_its_limit() {
+    let at = Location::Channel("a".into());
+    let truth = [placed("sensor_delay", at, 3.1e-3)];
+    let ended = diagnosed(&truth, [1e-3, 1e-7], Limit::Effort(0)).diagnosis;
+    assert!(ended.stopped_early);
+    assert!(
+        ended
+            .notes
+            .iter()
+            .any(|note| note.contains("ended at its limit"))
+    );
+    let done = diagnosed(&[], [1e-3, 1e-7], Limit::Asked(&|| false)).diagnosis;
+    assert!(!done.stopped_early);
 }

@@ -208,6 +208,10 @@ impl Base<'_> {
                 smooth: false,
             })
             .collect();
+        for job in &jobs {
+            let coordinates = self.problem.model.dof_count();
+            self.problem.effort.add(job.run, coordinates);
+        }
         let mut predicted = predict_all(&jobs).into_iter();
         trials
             .iter()

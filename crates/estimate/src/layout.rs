@@ -67,6 +67,11 @@ pub(crate) struct Layout {
     priors: Vec<Option<(Prior, Parameter)>>,
 }
 
+/// An effect without what records have of their own.
+fn of_all_records(placed: &Placed) -> Placed {
+    Placed::new(placed.effect, placed.at.clone(), placed.values.clone())
+}
+
 impl Layout {
     pub(crate) fn new(start: &Start, problem: &Problem, freedom: Freedom) -> Layout {
         let (runs, state_scale) = (&problem.runs, state_scale(problem));
@@ -80,7 +85,7 @@ impl Layout {
                 .collect()
         };
         let mut layout = Layout {
-            effects: start.effects.clone(),
+            effects: start.effects.iter().map(of_all_records).collect(),
             nominal: start.nominal.clone(),
             shared_values: places(false),
             own_values: places(true),
@@ -351,41 +356,38 @@ impl Layout {
     }
 
     pub(crate) fn unpack(&self, theta: &[f64]) -> Start {
-        let mut effects = self.effects.clone();
-        for (&(e, i), &value) in self.shared_values.iter().zip(theta) {
-            effects[e].values[i] = value;
-        }
-        for placed in &mut effects {
-            placed.of_record = if placed.own_places().is_empty() {
-                vec![]
-            } else {
-                vec![vec![]; self.middle_s.len()]
-            };
-        }
-        for run in 0..self.middle_s.len() {
-            let values = &theta[self.run_offset(run)..];
-            for (own, (&(e, i), value)) in self.own_values.iter().zip(values).enumerate() {
-                let value = value - self.ahead(run, own, theta);
-                effects[e].of_record[run].push(value);
-                if run == 0 {
-                    effects[e].values[i] = value;
-                }
+        let mut effects = self.placed_in(theta, 0);
+        let nominal = effects.split_off(self.effects.len());
+        let runs = 0..self.middle_s.len();
+        for (own, &(e, _)) in self.own_values.iter().enumerate() {
+            effects[e].of_record.resize(runs.len(), vec![]);
+            for (run, values) in effects[e].of_record.iter_mut().enumerate() {
+                values.push(theta[self.run_offset(run) + own] - self.ahead(run, own, theta));
             }
         }
-        let mut next = theta[self.effect_len()..].iter().copied();
-        let nominal = self.nominal.iter().map(|placed| Placed {
-            values: placed.values.iter().filter_map(|_| next.next()).collect(),
-            ..placed.clone()
-        });
-        let nominal = nominal.collect();
-        let initial = (0..self.middle_s.len())
-            .map(|run| self.state(theta, run).to_vec())
-            .collect();
         Start {
             effects,
             nominal,
-            initial,
+            initial: runs.map(|run| self.state(theta, run).to_vec()).collect(),
         }
+    }
+
+    /// Effects and nominal parameters as they are in one run.
+    pub(crate) fn placed_in(&self, theta: &[f64], run: usize) -> Vec<Placed> {
+        let mut placed: Vec<Placed> = self.effects.iter().chain(&self.nominal).cloned().collect();
+        for (&(e, i), &value) in self.shared_values.iter().zip(theta) {
+            placed[e].values[i] = value;
+        }
+        for (own, &(e, i)) in self.own_values.iter().enumerate() {
+            let value = theta[self.run_offset(run) + own];
+            placed[e].values[i] = value - self.ahead(run, own, theta);
+        }
+        let nominal = placed[self.effects.len()..].iter_mut();
+        let values = nominal.flat_map(|placed| &mut placed.values);
+        for (value, &next) in values.zip(&theta[self.effect_len()..]) {
+            *value = next;
+        }
+        placed
     }
 
     pub(crate) fn state<'a>(&self, theta: &'a [f64], run: usize) -> &'a [f64] {
@@ -402,8 +404,9 @@ impl Layout {
 
     /// Moves the values of the effects and nominal parameters to the nearest physical ones.
     pub(crate) fn make_physical(&self, theta: &mut [f64]) {
-        let start = self.unpack(theta);
-        for (e, mut placed) in start.effects.into_iter().enumerate() {
+        let mut effects = self.placed_in(theta, 0);
+        let nominal = effects.split_off(self.effects.len());
+        for (e, mut placed) in effects.into_iter().enumerate() {
             placed.effect.make_physical(&mut placed.values);
             for (entry, key) in self.shared_values.iter().enumerate() {
                 if key.0 == e {
@@ -412,7 +415,7 @@ impl Layout {
             }
         }
         let mut entry = self.effect_len();
-        for mut placed in start.nominal {
+        for mut placed in nominal {
             placed.effect.make_physical(&mut placed.values);
             for value in placed.values {
                 theta[entry] = value;

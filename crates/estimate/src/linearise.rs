@@ -76,9 +76,8 @@ impl<'a> Simulators<'a> {
         if let Some(known) = self.known.get(&key) {
             return Ok(Arc::clone(known));
         }
-        let start = self.layout.unpack(theta);
-        let effects: Vec<_> = start.effects.into_iter().chain(start.nominal).collect();
-        let simulator = Arc::new(self.problem.simulator(&effects, run)?);
+        let placed = self.layout.placed_in(theta, run);
+        let simulator = Arc::new(self.problem.simulator(&placed, run)?);
         self.known.insert(key, Arc::clone(&simulator));
         Ok(simulator)
     }
@@ -99,6 +98,10 @@ fn batch(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateErr
         initial: &point.initial,
         smooth: point.smooth,
     });
+    for point in points {
+        let run = &problem.runs[point.run];
+        problem.effort.add(run, problem.model.dof_count());
+    }
     let predictions = predict_all(&jobs.collect::<Vec<_>>());
     let subtracted = predictions
         .into_iter()

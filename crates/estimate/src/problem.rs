@@ -9,7 +9,7 @@ use simgap_model::{DEFAULT_UNCERTAINTY, Form, Location, Model, Node, OutputKind}
 use simgap_simulate::{ExternalPlant, Run, Simulator, substeps_for};
 
 use crate::candidate::Candidate;
-use crate::{Cancel, EstimateError, Whitening};
+use crate::{Cancel, Effort, EstimateError, Whitening};
 
 /// A nominal model and the runs it is compared with.
 pub struct Problem {
@@ -32,6 +32,8 @@ pub struct Problem {
     pub plant: Option<Arc<ExternalPlant>>,
     /// Ends the work on it.
     pub cancel: Cancel,
+    /// Counts the work on it.
+    pub effort: Effort,
 }
 
 /// How a fit counts what it leaves, and when it stops.
@@ -99,6 +101,7 @@ impl Problem {
             leaves_out_ends: false,
             plant: None,
             cancel: Cancel::default(),
+            effort: Effort::default(),
         })
     }
 
@@ -115,6 +118,7 @@ impl Problem {
             leaves_out_ends: false,
             plant: self.plant.clone(),
             cancel: self.cancel.clone(),
+            effort: self.effort.clone(),
         }
     }
 

@@ -66,7 +66,8 @@ fn of_run(problem: &Problem, effects: &[Placed], number: usize) -> Vec<Range<usi
         let Some(measured) = measured else {
             return whole;
         };
-        let here = Location::Channel(output.channel.clone());
+        let is_here =
+            |at: &Location| matches!(at, Location::Channel(name) if *name == output.channel);
         let signal = Sampled {
             values: measured,
             time_step_s: run.time_step_s,
@@ -76,7 +77,7 @@ fn of_run(problem: &Problem, effects: &[Placed], number: usize) -> Vec<Range<usi
         };
         let placed = problem.given.iter().chain(effects);
         placed
-            .filter(|placed| placed.at == here)
+            .filter(|placed| is_here(&placed.at))
             .map(|placed| match placed.in_record(number).action() {
                 Action::Output(map) | Action::Sampling(map)
                     if !(run.mended.is_resampled && map.lives_in_single_samples()) =>

@@ -9,7 +9,7 @@ use simgap_app::AppError;
 use simgap_app::diagnosis::{Question, distinct_stems};
 use simgap_app::input::{self, Input, RecordOptions};
 use simgap_app::text::{file_name, shown};
-use simgap_diagnose::{Cancel, DiagnoseError};
+use simgap_diagnose::{Cancel, DiagnoseError, Limit};
 
 use crate::FleetError;
 use crate::row::{Row, rows};
@@ -82,7 +82,7 @@ fn asked(unit: &Unit, cancel: &Cancel) -> Result<Vec<Row>, AppError> {
         records: &options,
         withheld: &unit.withhold,
         seed: 0,
-        is_spent: &|| false,
+        limit: Limit::default(),
         plant: None,
         cancel: cancel.clone(),
     };

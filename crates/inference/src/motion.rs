@@ -4,7 +4,7 @@ use simgap_estimate::Fit;
 
 /// Practical relevance: an effect, but for a wrong nominal parameter, is not worth a name that moves every output by less than
 /// this share of its motion, rms.
-const OF_MOTION: f64 = 0.01;
+const OF_MOTION: f64 = 0.003;
 
 /// What two fits of the same records differ by in each output, rms.
 pub(crate) fn between(with: &Fit, without: &Fit) -> Vec<f64> {

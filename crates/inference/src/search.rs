@@ -53,6 +53,13 @@ fn counts(set: &CandidateModel) -> [usize; 2] {
     [set.effects().len() - parameters, parameters]
 }
 
+/// The set that leaves least, by its likelihood.
+fn least(pool: &[CandidateModel]) -> Option<&CandidateModel> {
+    let by_misfit =
+        |a: &&CandidateModel, b: &&CandidateModel| a.fit.misfit.total_cmp(&b.fit.misfit);
+    pool.iter().min_by(by_misfit)
+}
+
 /// Told what is being done, and asked whether to go on.
 #[derive(Clone, Copy)]
 pub struct Budget<'a> {
@@ -110,6 +117,11 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether the search ends here. Asked between stages and between parts of them that follow each other.
+    pub(crate) fn is_spent(&self) -> bool {
+        (self.budget.is_spent)()
+    }
+
     /// Fits a set from a start.
     ///
     /// # Errors
@@ -127,23 +139,27 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The noise with the colour of what the set of a pool leaves that leaves least.
-    fn colour_of(&self, pool: &[CandidateModel]) -> NoiseModel {
-        let least = pool
-            .iter()
-            .min_by(|a, b| a.fit.misfit.total_cmp(&b.fit.misfit));
-        least.map_or_else(
-            || self.noise.clone(),
-            |least| self.noise.with_colour_of(&least.fit),
-        )
+    /// Whether the set that leaves least leaves nothing but noise once it is fitted under the colour of that: beside a slow effect that
+    /// it holds and the others do not, records have few independent samples.
+    fn leaves_noise_by_its_colour(&self, pool: &[CandidateModel]) -> bool {
+        let Some(least) = least(pool) else {
+            return false;
+        };
+        let options = self.noise.with_colour_of(&least.fit).search_options();
+        let again = fit(self.problem, &least.fit.estimate, &options);
+        again.is_ok_and(|again| {
+            let again = self.candidate_model(again);
+            self.leaves_noise(&again, &self.noise_of(&again))
+        })
     }
 
     /// The sets of a ranked pool, fitted again with the colour of what the set leaves that leaves least: the best of them, and of each
     /// effect the best sets of every size that hold it.
     pub fn recolour(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
-        let noise = self.colour_of(pool);
-        self.options = noise.search_options();
-        self.noise = noise;
+        if let Some(least) = least(pool) {
+            self.noise = self.noise.with_colour_of(&least.fit);
+        }
+        self.options = self.noise.search_options();
         let mut seen = BTreeSet::new();
         let again = pool.iter().enumerate().filter(|(i, set)| {
             let size = set.effects().len();
@@ -171,7 +187,7 @@ impl<'a> Search<'a> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        if (self.budget.is_spent)() || self.is_full(best) {
+        if self.is_spent() || self.is_full(best) {
             return Ok(true);
         }
         let left = best.fit.variance.iter().zip(self.unexplainable(best));
@@ -271,14 +287,13 @@ impl<'a> Search<'a> {
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
         rank(&mut pool);
-        // Under the colour of a slow effect that no set holds yet, records have fewer independent samples than sets have values.
-        if !self.colour_of(&pool).is_of_the_colour_of(&self.noise) {
+        if !self.is_settled(&pool, base)? && self.leaves_noise_by_its_colour(&pool) {
             pool = self.recolour(&pool);
+            if let Ok(base) = self.fit(&base.fit.estimate) {
+                return self.run_on(&base, recalibrated, pool);
+            }
         }
-        match pool.iter().find(|set| set.effects().is_empty()).cloned() {
-            Some(base) => self.run_on(&base, recalibrated, pool),
-            None => Ok(pool),
-        }
+        self.run_on(base, recalibrated, pool)
     }
 
     /// Goes on from single effects, found by their score.
@@ -382,7 +397,7 @@ impl<'a> Search<'a> {
             pool.retain(|set| set.log_marginal_likelihood.is_finite());
             rank(pool);
             let stays = pool.first().is_none_or(|first| first.key() == best.key());
-            if stays || (self.budget.is_spent)() {
+            if stays || self.is_spent() {
                 return Ok(());
             }
         }

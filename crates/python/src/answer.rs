@@ -10,6 +10,7 @@ use simgap_app::diagnosis::{
     Answer, Question, distinct_stems, known_kinds, prediction_columns, stem_of,
 };
 use simgap_app::input::{Input, RecordOptions};
+use simgap_diagnose::Limit;
 use simgap_report::summary::{Styles, summary_text};
 use simgap_simulate::ExternalPlant;
 
@@ -100,10 +101,8 @@ impl Asked {
         };
         let (train, check) = (of_model(&self.train)?, of_model(&self.check)?);
         let begun = Instant::now();
-        let is_spent = || {
-            let spent = |budget| begun.elapsed().as_secs_f64() > budget;
-            self.budget_s.is_some_and(spent)
-        };
+        let seconds = self.budget_s.unwrap_or(f64::INFINITY);
+        let is_over = || begun.elapsed().as_secs_f64() > seconds;
         let question = Question {
             model: &self.model,
             model_file: self.model_file.as_deref(),
@@ -112,7 +111,10 @@ impl Asked {
             records: &self.records,
             withheld: &self.withheld,
             seed: 0,
-            is_spent: &is_spent,
+            limit: match self.budget_s {
+                Some(_) => Limit::Asked(&is_over),
+                None => Limit::default(),
+            },
             plant,
             cancel: link.cancel.clone(),
         };

@@ -29,8 +29,6 @@ use simgap_signal::correlation::effective_sample_count;
 
 /// How well noise is known: its mean square to a tenth. What is left within it is noise.
 pub const NOISE_KNOWN: f64 = 1.1;
-/// Shares of independent samples that differ by no more than this factor are of one colour.
-const SAME_COLOUR: f64 = 1.25;
 /// A fit of the search stops when a step gains less than this: sets are told apart by more.
 const SEARCH_CONVERGED: f64 = 0.1;
 /// Steps of a fit of the search: it stops in a flat valley, a final fit does not.
@@ -82,14 +80,6 @@ impl NoiseModel {
             effective_share: effective_share(residual, self.floor.len()),
             floor: self.floor.clone(),
         }
-    }
-
-    /// Whether the records hold about as many independent samples as under another.
-    #[must_use]
-    pub fn is_of_the_colour_of(&self, other: &NoiseModel) -> bool {
-        let channels = self.effective_share.iter().zip(&other.effective_share);
-        let mut factors = channels.map(|(own, other)| (own / other).max(other / own));
-        factors.all(|factor| factor < SAME_COLOUR)
     }
 
     /// Options of the fits of a search.

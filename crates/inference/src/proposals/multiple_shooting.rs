@@ -40,6 +40,10 @@ impl Search<'_> {
         let mut found = self.fit_beside(&begun, &cut, &self.options)?.1;
         let mut losses = self.loss_laws(&begun);
         while !cut.is_whole() {
+            // What was found in stretches alone says nothing of whole records.
+            if self.is_spent() {
+                return Ok(vec![]);
+            }
             let (parameters, mut sets) = self.fit_beside(&begun, &cut, &wide)?;
             let of_losses = fit_long(&cut.apply(self.problem), &losses, &wide).into_iter();
             losses = of_losses.map(|fit| cut.of_joined(&fit.estimate)).collect();
@@ -102,8 +106,10 @@ impl Search<'_> {
         let parameters = search.candidate_model(parameters);
         let linear = linearise_at(problem, &parameters.fit, &search.options)?;
         let mut found = search.extend_at(&parameters, &linear, FITTED)?;
-        found.extend(search.fit_joint(&parameters, &linear)?);
-        found.extend(search.multistart(&parameters, &linear)?);
+        if !self.is_spent() {
+            found.extend(search.fit_joint(&parameters, &linear)?);
+            found.extend(search.multistart(&parameters, &linear)?);
+        }
         Ok((parameters, found))
     }
 

@@ -55,12 +55,14 @@ impl Search<'_> {
         };
         let linear = linearise_at(self.problem, &recalibrated.fit, &wide.options)?;
         let mut found = wide.extend_at(recalibrated, &linear, FITTED)?;
-        found.extend(wide.fit_joint(recalibrated, &linear)?);
+        if !self.is_spent() {
+            found.extend(wide.fit_joint(recalibrated, &linear)?);
+        }
         found.push(recalibrated.clone());
         rank(&mut found);
         let mut larger = vec![];
         for set in found.iter().take(EXTENDED) {
-            if !self.is_full(set) {
+            if !self.is_full(set) && !self.is_spent() {
                 larger.extend(wide.extend(set, BESIDE)?);
             }
         }

@@ -54,6 +54,9 @@ impl Search<'_> {
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let mut found = Vec::new();
         for set in sets.iter().take(FAR) {
+            if self.is_spent() {
+                break;
+            }
             let linear = linearise_at(self.problem, &set.fit, &self.options)?;
             found.extend(self.multistart(set, &linear)?);
         }
@@ -71,7 +74,7 @@ impl Search<'_> {
         for (i, one) in singles.iter().enumerate() {
             let others = singles[i + 1..].iter();
             let starts: Vec<Start> = others.filter_map(|other| united(one, other)).collect();
-            if starts.is_empty() {
+            if starts.is_empty() || self.is_spent() {
                 continue;
             }
             let linear = linearise_at(self.problem, &one.fit, &self.options)?;

@@ -80,7 +80,7 @@ class Diagnosis:
 
     @property
     def stopped_early(self) -> bool:
-        """The search ended before it was done, by ``budget_s``."""
+        """The search ended before it was done, by ``budget_s`` or after so much work."""
         return self._values["stopped_early"]
 
     @cached_property
