@@ -5,7 +5,7 @@ use std::sync::Arc;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, Side};
 use simgap_effects::Placed;
-use simgap_simulate::{Job, predict_all};
+use simgap_simulate::Job;
 
 use crate::fit::{Known, fit_with};
 use crate::layout::{Freedom, Layout};
@@ -208,11 +208,7 @@ impl Base<'_> {
                 smooth: false,
             })
             .collect();
-        for job in &jobs {
-            let coordinates = self.problem.model.dof_count();
-            self.problem.effort.add(job.run, coordinates);
-        }
-        let mut predicted = predict_all(&jobs).into_iter();
+        let mut predicted = self.problem.predict_all(&jobs).into_iter();
         trials
             .iter()
             .map(|(_, share)| {

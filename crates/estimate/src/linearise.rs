@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use simgap_simulate::{Job, LANES, Simulator, predict_all};
+use simgap_simulate::{Job, LANES, Simulator};
 
 use crate::layout::Layout;
 use crate::reach::Reach;
@@ -98,11 +98,7 @@ fn batch(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateErr
         initial: &point.initial,
         smooth: point.smooth,
     });
-    for point in points {
-        let run = &problem.runs[point.run];
-        problem.effort.add(run, problem.model.dof_count());
-    }
-    let predictions = predict_all(&jobs.collect::<Vec<_>>());
+    let predictions = problem.predict_all(&jobs.collect::<Vec<_>>());
     let subtracted = predictions
         .into_iter()
         .zip(points)

@@ -6,7 +6,7 @@ use simgap_effects::{
     Action, Effect, Family, Placed, Prior, SiteScale, catalogue_of, own_laws, places_of,
 };
 use simgap_model::{DEFAULT_UNCERTAINTY, Form, Location, Model, Node, OutputKind};
-use simgap_simulate::{ExternalPlant, Run, Simulator, substeps_for};
+use simgap_simulate::{ExternalPlant, Job, Run, Simulator, predict_all, substeps_for};
 
 use crate::candidate::Candidate;
 use crate::{Cancel, Effort, EstimateError, Whitening};
@@ -183,6 +183,17 @@ impl Problem {
             simulators.push(simulator);
         }
         Ok(simulators)
+    }
+
+    /// Predictions of all jobs together, counted as work on the problem.
+    pub(crate) fn predict_all(
+        &self,
+        jobs: &[Job<'_>],
+    ) -> Vec<Result<Vec<Vec<f64>>, EstimateError>> {
+        for job in jobs {
+            self.effort.add(job.run, self.model.dof_count());
+        }
+        predict_all(jobs)
     }
 
     /// Length of an initial state.
