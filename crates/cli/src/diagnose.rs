@@ -34,8 +34,9 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
     };
     let (train, check) = (read(&args.train)?, read(&args.check)?);
     let begun = Instant::now();
-    let seconds = args.budget.unwrap_or(f64::INFINITY);
-    let is_over = || begun.elapsed().as_secs_f64() > seconds;
+    let is_over = args
+        .budget
+        .map(|budget| move || begun.elapsed().as_secs_f64() > budget);
     let question = Question {
         model: &model,
         model_file: Some(&args.model),
@@ -44,10 +45,9 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Result<(), CliError> {
         records: &options,
         withheld: &args.withhold,
         seed: args.seed,
-        limit: match args.budget {
-            Some(_) => Limit::Asked(&is_over),
-            None => Limit::default(),
-        },
+        limit: is_over
+            .as_ref()
+            .map_or_else(Limit::default, |is_over| Limit::Asked(is_over)),
         plant: None,
         cancel: Cancel::default(),
     };

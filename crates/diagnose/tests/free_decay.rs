@@ -1,8 +1,12 @@
 //! Records without an input: a plant that is let go and rings down.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[allow(dead_code)]
+mod common;
+
+use common::{Noise, named, placed};
 use simgap_diagnose::{Limit, Outcome, Request, Status, diagnose};
-use simgap_effects::{Placed, find};
+use simgap_effects::Placed;
 use simgap_model::{Location, Model};
 use simgap_record::{Channel, Record};
 use simgap_simulate::{Run, Simulator};
@@ -44,27 +48,6 @@ kind = "displacement"
 at = "beam"
 "#;
 
-fn placed(kind: &str, at: Location, value: f64) -> Placed {
-    Placed::new(find(kind).unwrap(), at, vec![value])
-}
-
-/// Kinds and places that are named.
-fn named(outcome: &Outcome) -> Vec<(String, Location)> {
-    let effects = outcome.diagnosis.verdict.effects.iter();
-    effects.map(|e| (e.kind.clone(), e.at.clone())).collect()
-}
-
-/// About normal numbers of zero mean and unit variance: twelve draws of a linear congruence each.
-fn noise(word: &mut u64) -> f64 {
-    let draw = |_| {
-        *word = word
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (*word >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..12).map(draw).sum::<f64>() - 6.0
-}
-
 /// A record of a plant with effects, let go from a state of its own: its channels have noise of their resolution and are
 /// stored in steps of it.
 fn record(model: &Model, effects: &[Placed], number: usize, resolution: [f64; 2]) -> Record {
@@ -83,12 +66,12 @@ fn record(model: &Model, effects: &[Placed], number: usize, resolution: [f64; 2]
     let mut state = vec![0.0; simulator.state_len()];
     (state[0], state[1]) = (0.5 * tip, tip);
     let outputs = simulator.predict(&run, &state).unwrap();
-    let mut word = number as u64;
+    let mut noise = Noise(number as u64);
     let channels = outputs.iter().zip(&model.outputs).zip(resolution);
     let channels = channels.map(|((signal, output), resolution)| {
         let stored = signal
             .iter()
-            .map(|y| (y / resolution + noise(&mut word)).round() * resolution);
+            .map(|y| (y / resolution + noise.next()).round() * resolution);
         let unit = if output.channel == "a" { "m/s^2" } else { "m" };
         Channel::new(&output.channel, unit, stored.collect::<Vec<f64>>())
     });
@@ -113,7 +96,7 @@ fn diagnosed(effects: &[Placed], resolution: [f64; 2], limit: Limit<'_>) -> Outc
 fn verify_a_delay_is_found_where_it_shows_in_another_channel() {
     let at = Location::Channel("a".into());
     let outcome = diagnosed(
-        &[placed("sensor_delay", at.clone(), 3.1e-3)],
+        &[placed("sensor_delay", at.clone(), &[3.1e-3])],
         [1e-3, 1e-7],
         Limit::default(),
     );
@@ -133,7 +116,7 @@ fn verify_a_delay_is_found_where_it_shows_in_another_channel() {
 fn verify_nothing_is_added_to_a_wrong_damping_within_coarse_steps() {
     let at = Location::Between(["beam".into(), "ground".into()]);
     let outcome = diagnosed(
-        &[placed("damping_error", at.clone(), 1.8)],
+        &[placed("damping_error", at.clone(), &[1.8])],
         [2.0, 1.5e-3],
         Limit::default(),
     );
@@ -150,7 +133,7 @@ fn verify_nothing_is_added_to_a_wrong_damping_within_coarse_steps() {
 #[test]
 fn verify_a_search_ends_at_its_limit() {
     let at = Location::Channel("a".into());
-    let truth = [placed("sensor_delay", at, 3.1e-3)];
+    let truth = [placed("sensor_delay", at, &[3.1e-3])];
     let ended = diagnosed(&truth, [1e-3, 1e-7], Limit::Effort(0)).diagnosis;
     assert!(ended.stopped_early);
     assert!(

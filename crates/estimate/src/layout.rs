@@ -362,7 +362,7 @@ impl Layout {
         for (own, &(e, _)) in self.own_values.iter().enumerate() {
             effects[e].of_record.resize(runs.len(), vec![]);
             for (run, values) in effects[e].of_record.iter_mut().enumerate() {
-                values.push(theta[self.run_offset(run) + own] - self.ahead(run, own, theta));
+                values.push(self.own_value(theta, run, own));
             }
         }
         Start {
@@ -379,8 +379,7 @@ impl Layout {
             placed[e].values[i] = value;
         }
         for (own, &(e, i)) in self.own_values.iter().enumerate() {
-            let value = theta[self.run_offset(run) + own];
-            placed[e].values[i] = value - self.ahead(run, own, theta);
+            placed[e].values[i] = self.own_value(theta, run, own);
         }
         let nominal = placed[self.effects.len()..].iter_mut();
         let values = nominal.flat_map(|placed| &mut placed.values);
@@ -388,6 +387,11 @@ impl Layout {
             *value = next;
         }
         placed
+    }
+
+    /// A value that a run has of its own, by its place among these.
+    fn own_value(&self, theta: &[f64], run: usize, own: usize) -> f64 {
+        theta[self.run_offset(run) + own] - self.ahead(run, own, theta)
     }
 
     pub(crate) fn state<'a>(&self, theta: &'a [f64], run: usize) -> &'a [f64] {

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 use simgap_effects::{Family, Placed};
 use simgap_estimate::{
-    Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
+    Base, Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
 };
 
 use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
@@ -287,30 +287,32 @@ impl<'a> Search<'a> {
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
         rank(&mut pool);
-        if !self.is_settled(&pool, base)? && self.leaves_noise_by_its_colour(&pool) {
-            pool = self.recolour(&pool);
-            if let Ok(base) = self.fit(&base.fit.estimate) {
-                return self.run_on(&base, recalibrated, pool);
-            }
+        let is_settled = self.is_settled(&pool, base)?;
+        if is_settled || !self.leaves_noise_by_its_colour(&pool) {
+            return self.run_on((base, &linear), recalibrated, pool, is_settled);
         }
-        self.run_on(base, recalibrated, pool)
+        pool = self.recolour(&pool);
+        let base = &self.fit(&base.fit.estimate)?;
+        let linear = linearise_at(self.problem, &base.fit, &self.options)?;
+        let is_settled = self.is_settled(&pool, base)?;
+        self.run_on((base, &linear), recalibrated, pool, is_settled)
     }
 
-    /// Goes on from single effects, found by their score.
+    /// Goes on from single effects, found by their score from a base.
     fn run_on(
         &self,
-        base: &CandidateModel,
+        (base, linear): (&CandidateModel, &Base<'_>),
         recalibrated: Option<CandidateModel>,
         mut pool: Vec<CandidateModel>,
+        is_settled: bool,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let step = self.budget.progress;
-        let linear = linearise_at(self.problem, &base.fit, &self.options)?;
-        if !self.is_settled(&pool, base)? {
+        if !is_settled {
             step("single effects from many values");
-            pool.extend(self.multistart(base, &linear)?);
+            pool.extend(self.multistart(base, linear)?);
             pool.extend(self.fit_from_given(base, FITTED[0])?);
         }
-        pool.extend(self.fit_dynamics_of_parameters(base, &pool, &linear));
+        pool.extend(self.fit_dynamics_of_parameters(base, &pool, linear));
         rank(&mut pool);
         // What leaves little may still be the shadow of another cause.
         if let Some(single) = pool.first().filter(|set| set.effects().len() == 1) {
@@ -339,7 +341,7 @@ impl<'a> Search<'a> {
             }
             if size == 0 {
                 next.extend(self.unite(&pool)?);
-                next.extend(self.fit_joint(base, &linear)?);
+                next.extend(self.fit_joint(base, linear)?);
                 rank(&mut next);
                 if !self.is_settled(&next, base)? {
                     step("pairs from many values");

@@ -101,8 +101,9 @@ impl Asked {
         };
         let (train, check) = (of_model(&self.train)?, of_model(&self.check)?);
         let begun = Instant::now();
-        let seconds = self.budget_s.unwrap_or(f64::INFINITY);
-        let is_over = || begun.elapsed().as_secs_f64() > seconds;
+        let is_over = self
+            .budget_s
+            .map(|budget| move || begun.elapsed().as_secs_f64() > budget);
         let question = Question {
             model: &self.model,
             model_file: self.model_file.as_deref(),
@@ -111,10 +112,9 @@ impl Asked {
             records: &self.records,
             withheld: &self.withheld,
             seed: 0,
-            limit: match self.budget_s {
-                Some(_) => Limit::Asked(&is_over),
-                None => Limit::default(),
-            },
+            limit: is_over
+                .as_ref()
+                .map_or_else(Limit::default, |is_over| Limit::Asked(is_over)),
             plant,
             cancel: link.cancel.clone(),
         };

@@ -66,10 +66,10 @@ pub(crate) fn placed(kind: &str, at: Location, values: &[f64]) -> Placed {
 }
 
 /// Numbers of zero mean and unit variance, about normal: twelve draws by splitmix64 each.
-struct Noise(u64);
+pub(crate) struct Noise(pub(crate) u64);
 
 impl Noise {
-    fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         let draw = |_| {
             self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
             let mut z = self.0;

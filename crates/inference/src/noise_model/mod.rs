@@ -8,7 +8,7 @@
 //! V_c is the squared discrepancy of a channel, n_c the number of its samples that are independent. ε_c comes from the
 //! records and the nominal model ([`accuracy`], [`input_noise`]). The share of independent samples is that of one
 //! residual, and the same for all sets that are compared: first what re-estimated parameters leave, then what the best
-//! set leaves, once. With it the model discrepancy has an amplitude that every set infers, V_c itself, and a colour
+//! set leaves, once; before larger sets where a single effect leaves nothing but noise. With it the model discrepancy has an amplitude that every set infers, V_c itself, and a colour
 //! that none of them chooses. Coloured noise of a sensor has its share of independent samples alike. Where noise of the
 //! inputs is integrated by the plant, residuals are whitened before they are squared ([`whitening`]).
 //!
