@@ -42,12 +42,11 @@ pub(crate) fn decide(
 ) -> Result<Decision, DiagnoseError> {
     let problem = search.problem;
     let std = problem.output_std();
-    let given = prepared.nominal.variance.iter().zip(&std);
-    let square: Vec<f64> = given.map(|(given, std)| given.min(std * std)).collect();
+    let given = &prepared.nominal.variance;
     // What is worth a name is a matter of the gap that re-estimated parameters leave.
-    let remaining = prepared.recalibrated.variance.iter().zip(&square);
+    let remaining = prepared.recalibrated.variance.iter().zip(given).zip(&std);
     let rms: Vec<f64> = remaining
-        .map(|(left, given)| left.min(*given).sqrt())
+        .map(|((left, given), std)| left.min(*given).min(std * std).sqrt())
         .collect();
     let base = match pool.iter().find(|set| set.effects().is_empty()) {
         Some(base) => base.clone(),
@@ -55,11 +54,7 @@ pub(crate) fn decide(
     };
     let posterior = model_posterior(search, pool, &rms)?;
     let best = posterior.best().unwrap_or(&base).clone();
-    let gap = Gap {
-        noise: search.noise_of(&best),
-        square,
-        std,
-    };
+    let gap = Gap::of(given, &best.fit.variance, &search.noise_of(&best), &std);
     let other = other(search, &base, &best, &gap)?;
     let mut decision = Decision {
         status: Status::None,
@@ -70,10 +65,9 @@ pub(crate) fn decide(
     };
     if decision.other.probability > LIKELIER_THAN_NOT {
         decision.status = Status::Unknown;
-        let of_parameters = gap.left(&base.fit.variance);
         decision.start = match &decision.other.law {
-            Some(law) if law.left < of_parameters => law.fit.estimate.clone(),
-            _ => base.fit.estimate.clone(),
+            Some(law) => law.fit.estimate.clone(),
+            None => base.fit.estimate.clone(),
         };
     } else if best.effects().is_empty() {
         small_errors(search, first, &rms, &mut decision)?;

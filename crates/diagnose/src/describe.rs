@@ -8,8 +8,8 @@ use simgap_model::{Location, Model};
 use crate::check::{Check, Checked};
 use crate::decide::Decision;
 use crate::diagnosis::{
-    CandidateResult, ChannelShare, LocationShare, NamedEffect, NamedParameter, OtherCause, Rival,
-    Status, Unexplained, Verdict,
+    CandidateResult, ChannelGap, ChannelShare, LocationShare, NamedEffect, NamedParameter,
+    OtherCause, Rival, Status, Unexplained, Verdict,
 };
 use crate::place::place_of;
 use crate::structure::describe;
@@ -215,6 +215,14 @@ fn looks_like(model: &Model, checked: &Checked, prediction: usize) -> Vec<String
     sentences
 }
 
+/// The channels that the model does not move.
+fn unconnected(checked: &Checked) -> impl Iterator<Item = &str> {
+    let channels = checked.gap.channels.iter();
+    let explained = |c: &ChannelGap| 1.0 - c.recalibrated.min(c.corrected).powi(2);
+    let unmoved = channels.filter(move |c| explained(c) < UNCONNECTED);
+    unmoved.map(|c| c.channel.as_str())
+}
+
 fn description(model: &Model, decision: &Decision, checked: &Checked) -> Vec<String> {
     let mut sentences = vec![];
     if checked.is_refuted {
@@ -222,12 +230,9 @@ fn description(model: &Model, decision: &Decision, checked: &Checked) -> Vec<Str
             "the check records refute the best set: it predicts them no better than re-estimated parameters do".into(),
         );
     }
-    let channels = checked.gap.channels.iter();
-    for channel in channels.filter(|c| 1.0 - c.recalibrated.min(c.corrected).powi(2) < UNCONNECTED)
-    {
+    for channel in unconnected(checked) {
         sentences.push(format!(
-            "channel {} has nothing to do with the inputs: no set of the catalogue explains a tenth of it",
-            channel.channel
+            "channel {channel} has nothing to do with the inputs: no set of the catalogue explains a tenth of it"
         ));
     }
     if let Some(found) = &decision.other.coincidence {
@@ -350,7 +355,11 @@ pub(crate) fn locations(decision: &Decision, is_unknown: bool) -> Vec<LocationSh
 }
 
 /// What to measure next when rivals are left.
-pub(crate) fn next_experiment(model: &Model, verdict: &Verdict) -> Option<String> {
+pub(crate) fn next_experiment(
+    model: &Model,
+    verdict: &Verdict,
+    checked: &Checked,
+) -> Option<String> {
     let rivals: Vec<String> = verdict
         .effects
         .iter()
@@ -374,7 +383,15 @@ pub(crate) fn next_experiment(model: &Model, verdict: &Verdict) -> Option<String
     if !rivals.is_empty() {
         return Some(rivals.join(". "));
     }
-    (verdict.status == Status::Unknown).then(|| {
+    let is_unknown = verdict.status == Status::Unknown;
+    let channels: Vec<&str> = unconnected(checked).filter(|_| is_unknown).collect();
+    if !channels.is_empty() {
+        return Some(format!(
+            "see whether the sensor of {} is connected: its reading while the machine is moved by hand, or driven slowly",
+            channels.join(" and of ")
+        ));
+    }
+    is_unknown.then(|| {
         "slow loading forwards and back over the whole travel, then the same motion at three speeds: force against displacement and against velocity show what kind of law is missing".into()
     })
 }

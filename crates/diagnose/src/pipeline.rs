@@ -292,9 +292,9 @@ fn finish<R: Borrow<Record>>(
         diagnosis: Diagnosis {
             schema: "simgap-diagnosis/1",
             model: request.model.name.clone(),
+            next_experiment: describe::next_experiment(request.model, &verdict, &checked),
             gap: checked.gap,
             r#where,
-            next_experiment: describe::next_experiment(request.model, &verdict),
             verdict,
             turning: data.units.turning.clone(),
             candidates,

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! V_c is the squared discrepancy of channel c, N_c noise, which is known to a tenth, G_c the gap (of the model as given at most the
-//! variance s_c² of the channel).
+//! variance s_c² of the channel). Where the model as given moves a channel by more than all that was measured there, and a
+//! set explains nothing of it, what it leaves is no noise of a sensor that sees the machine: N_c = 0.
 
 use crate::noise_model::NOISE_KNOWN;
 
@@ -23,6 +24,28 @@ pub struct Gap {
 }
 
 impl Gap {
+    /// The gap between the model as given, which leaves `given`, and a set that leaves `variance`, of which `noise` may be noise.
+    #[must_use]
+    pub fn of(given: &[f64], variance: &[f64], noise: &[f64], std: &[f64]) -> Gap {
+        let channels = given.iter().zip(std);
+        let square = channels.map(|(given, std)| given.min(std * std));
+        let noise = noise.iter().enumerate().map(|(c, noise)| {
+            let all = std[c] * std[c];
+            // Noise and a motion that is not there add up.
+            let is_moved = given[c] > 2.0 * all;
+            let is_explained = NOISE_KNOWN * variance[c] < all;
+            match is_moved && !is_explained {
+                true => 0.0,
+                false => *noise,
+            }
+        });
+        Gap {
+            square: square.collect(),
+            noise: noise.collect(),
+            std: std.to_vec(),
+        }
+    }
+
     /// u of (1) for what is left of each channel; zero where there is no gap.
     #[must_use]
     pub fn left(&self, variance: &[f64]) -> f64 {
@@ -57,5 +80,16 @@ mod tests {
             std: vec![1.0],
         };
         assert_eq!(none.left(&[0.02]), 0.0);
+    }
+
+    #[test]
+    fn verify_a_sensor_that_is_not_connected_leaves_all_of_the_gap() {
+        let left = |given: f64| {
+            let gap = Gap::of(&[given, 0.5], &[0.99, 0.01], &[0.99, 0.01], &[1.0, 1.0]);
+            gap.left(&[0.99, 0.01])
+        };
+        // The model moves it by three times its noise, or by half of it.
+        assert!((left(10.0) - (0.99_f64 / 1.489).sqrt()).abs() < 1e-12);
+        assert_eq!(left(1.25), 0.0);
     }
 }

@@ -44,7 +44,7 @@ pub struct Other {
     pub probability: f64,
     /// u of the best set.
     pub left: f64,
-    /// The free law that leaves least, where one was sought.
+    /// The free law that leaves least, where one was sought and leaves less than no law and re-estimated parameters do.
     pub law: Option<FreeLaw>,
     /// Values of the best set that speak for one cause behind them.
     pub coincidence: Option<Coincidence>,
@@ -135,5 +135,7 @@ fn best_law(
         })
     });
     let fitted: Vec<FreeLaw> = fitted.collect();
-    Ok(fitted.into_iter().min_by(|a, b| a.left.total_cmp(&b.left)))
+    let least = fitted.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
+    let of_parameters = gap.left(&base.fit.variance).min(1.0);
+    Ok(least.filter(|law| law.left < of_parameters))
 }
