@@ -95,7 +95,7 @@ impl<'a> Check<'a> {
                 &self.problem,
                 (self.train, estimate, options),
                 &predictions[2],
-            )?,
+            ),
         };
         let of_simulation = self.accuracy(placed, &predictions[2])?;
         let left_of_channels = left_of_channels(&gap, spread, &of_simulation);

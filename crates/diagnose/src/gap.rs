@@ -19,6 +19,8 @@ pub(crate) struct Prediction {
     pub(crate) discrepancy: Vec<Vec<Vec<f64>>>,
     /// Initial state of each run.
     pub(crate) initial: Vec<Vec<f64>>,
+    /// The effects that have values of each run's own.
+    pub(crate) own: Vec<Placed>,
     /// For each channel, rms(discrepancy) / std(measured) over all runs.
     pub(crate) nrmse: Vec<f64>,
 }
@@ -46,6 +48,7 @@ pub(crate) fn predict(
         simulators,
         discrepancy: fit.discrepancy,
         initial: fit.estimate.initial,
+        own: fit.estimate.effects,
         nrmse,
     })
 }
@@ -148,6 +151,7 @@ mod tests {
     #[test]
     fn verify_what_a_true_model_would_close() {
         let leaves = |channel: Vec<f64>| Prediction {
+            own: vec![],
             simulators: vec![],
             nrmse: vec![(channel.iter().map(|d| d * d).sum::<f64>() / 4.0).sqrt() / 2.0],
             discrepancy: vec![vec![channel]],

@@ -8,6 +8,7 @@ use simgap_effects::Placed;
 use simgap_simulate::Job;
 
 use crate::fit::{Known, fit_with};
+use crate::gram::{Gram, grams};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, discrepancy, linearise};
 use crate::merit::Merit;
@@ -32,6 +33,8 @@ pub struct Base<'a> {
     pub(crate) fit: &'a Fit,
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
+    /// Products of its sensitivities, run by run.
+    grams: Vec<Gram>,
     objective: f64,
     reach: Reach,
     pub(crate) weights: Vec<f64>,
@@ -69,10 +72,10 @@ pub(crate) struct Regressor {
 /// The normal equations of a set at a fit of it.
 pub(crate) struct LinearSystem {
     pub(crate) layout: Layout,
-    pub(crate) theta: Vec<f64>,
-    at: Linearised,
+    pub(crate) at: Linearised,
+    grams: Vec<Gram>,
     objective: f64,
-    channel_weights: Vec<f64>,
+    pub(crate) channel_weights: Vec<f64>,
     pub(crate) hessian: Mat<f64>,
     gradient: Vec<f64>,
 }
@@ -83,21 +86,31 @@ impl LinearSystem {
         fit: &Fit,
         weights: &FitOptions,
     ) -> Result<LinearSystem, EstimateError> {
+        LinearSystem::of(problem, &fit.estimate, weights)
+    }
+
+    /// At values that need not be those of a fit.
+    pub(crate) fn of(
+        problem: &Problem,
+        values: &Start,
+        weights: &FitOptions,
+    ) -> Result<LinearSystem, EstimateError> {
         let freedom = Freedom {
             nominal_std: weights.nominal_std,
             shared_held: false,
         };
-        let layout = Layout::new(&fit.estimate, problem, freedom);
-        let theta = layout.pack(&fit.estimate);
+        let layout = Layout::new(values, problem, freedom);
+        let theta = layout.pack(values);
         let at = linearise(problem, &layout, &theta)?;
         let merit = Merit::new(problem, weights);
         let (objective, variance) = merit.of(&layout, &theta, &at.discrepancy);
         let channel_weights = merit.weights(&variance);
-        let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
+        let grams = grams(&at.columns, variance.len(), &[], &[]);
+        let (hessian, gradient) = normal_equations(&layout, &theta, &at, &grams, &channel_weights);
         Ok(LinearSystem {
             layout,
-            theta,
             at,
+            grams,
             objective,
             channel_weights,
             hessian,
@@ -118,11 +131,11 @@ pub fn linearise_at<'a>(
     let LinearSystem {
         layout,
         at,
+        grams,
         objective,
         channel_weights,
         hessian,
         gradient,
-        ..
     } = LinearSystem::at(problem, fit, weights)?;
     let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
     let shares = weights.effective_share.iter();
@@ -137,6 +150,7 @@ pub fn linearise_at<'a>(
         fit,
         layout,
         at,
+        grams,
         objective,
         reach: Reach::of(problem, &fit.estimate.effects),
         weights: channel_weights,
@@ -180,6 +194,7 @@ impl Base<'_> {
         let known = Known {
             objective: self.objective,
             column: &column,
+            grams: &self.grams,
         };
         fit_with(self.problem, start, weights, false, Some(known))
     }

@@ -17,6 +17,7 @@
 use std::sync::Arc;
 
 use crate::curvature::Curvature;
+use crate::gram::Gram;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Column, Linearised, Probe, complete, probe};
 use crate::merit::Merit;
@@ -79,6 +80,8 @@ pub(crate) struct Known<'a> {
     pub(crate) objective: f64,
     /// By layout, run and place.
     pub(crate) column: &'a dyn Fn(&Layout, usize, usize) -> Option<Column>,
+    /// Their products, run by run.
+    pub(crate) grams: &'a [Gram],
 }
 
 /// As [`fit`], with sensitivities that are known already. Where a step with them does not come near the objective of
@@ -120,7 +123,9 @@ pub(crate) fn fit_with(
     let search = Line {
         layout: &layout,
         merit: &merit,
+        known: known.as_ref().map_or(&[], |known| known.grams),
     };
+    let mut grams = vec![];
     let along = |_: usize, place: usize| !(weights.keep_nuisance && layout.is_nuisance(place));
     let base = known.map_or(objective, |known| known.objective);
     if objective - base > stale {
@@ -128,7 +133,8 @@ pub(crate) fn fit_with(
         // whichever step goes further.
         let own = fresh(at.clone(), &theta)?;
         let reached = |at: &Linearised| {
-            let next = search.step(&theta, objective, at, &mut FIRST_DAMPING.clone(), along);
+            let trial = (&mut FIRST_DAMPING.clone(), &mut vec![]);
+            let next = search.step(&theta, objective, at, trial, along);
             next.map_or(objective, |next| next.objective)
         };
         if reached(&own) < reached(&at) {
@@ -143,7 +149,8 @@ pub(crate) fn fit_with(
     let mut iterations = 0;
     while iterations < weights.most_steps {
         iterations += 1;
-        let Some(next) = search.step(&theta, objective, &at, &mut damping, along) else {
+        let ways = (&mut damping, &mut grams);
+        let Some(next) = search.step(&theta, objective, &at, ways, along) else {
             if exact {
                 break;
             }
@@ -180,7 +187,7 @@ pub(crate) fn fit_with(
             (exact, taken_at) = (true, objective);
         }
     }
-    Ok(finish(&layout, &merit, &theta, at, iterations))
+    Ok(finish(&search, &theta, (at, &grams), iterations))
 }
 
 /// By how much the entry at a place in the list of [`Layout::entries`] was multiplied, where it is a shared size or factor; one elsewhere.
@@ -206,14 +213,16 @@ fn carried(column: &Column, ratio: f64) -> Column {
 }
 
 fn finish(
-    layout: &Layout,
-    merit: &Merit<'_>,
+    search: &Line<'_>,
     theta: &[f64],
-    at: Linearised,
+    (at, last): (Linearised, &[Gram]),
     iterations: usize,
 ) -> Fit {
+    let Line { layout, merit, .. } = *search;
+    let grams = search.grams(&at, last);
     let (objective, variance) = merit.of(layout, theta, &at.discrepancy);
-    let (hessian, _) = normal_equations(layout, theta, &at, &merit.weights(&variance));
+    let weights = merit.weights(&variance);
+    let (hessian, _) = normal_equations(layout, theta, &at, &grams, &weights);
     let all: Vec<usize> = (0..layout.len()).collect();
     let curvature = Curvature::of(layout, theta, &hessian);
     let spread = variances(&curvature.with_fixed_priors(), &all);

@@ -72,6 +72,7 @@ mod curvature;
 mod drift;
 mod effort;
 mod fit;
+mod gram;
 mod initial;
 mod joint;
 mod layout;
@@ -102,7 +103,7 @@ pub use layout::{Owner, Start};
 pub use outright::score_outright;
 pub use problem::{FitOptions, Problem};
 pub use score::{Score, score, score_shapes};
-pub use spread::deviations;
+pub use spread::spread;
 pub use summary::{EstimatedEffect, EstimatedParameter, FitSummary};
 pub use whitening::Whitening;
 

@@ -22,6 +22,7 @@ use simgap_estimate::{
 };
 
 use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
+use crate::extended::Extended;
 use crate::gap::{Gap, RELEVANT_SHARE};
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
@@ -33,8 +34,7 @@ const SURVIVORS: [usize; 2] = [5, 3];
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Sets that are fitted again under another noise model.
 const REFITTED: usize = 16;
-/// Candidates fitted in the place of each effect of the best set, and beside it.
-const EXCHANGED: usize = 8;
+/// Candidates fitted beside the best set; in the place of one of its effects as many as beside a single one.
 const ADDED: usize = 4;
 /// Effects of a set at the most; wrong nominal parameters besides.
 const MOST_EFFECTS: usize = 3;
@@ -81,6 +81,7 @@ pub struct Search<'a> {
     pub(crate) nominal: NominalPrior,
     /// When to stop.
     pub budget: Budget<'a>,
+    pub(crate) extended: Extended,
 }
 
 impl<'a> Search<'a> {
@@ -99,6 +100,7 @@ impl<'a> Search<'a> {
             space,
             nominal: NominalPrior::Wrong,
             budget,
+            extended: Extended::default(),
         }
     }
 
@@ -114,6 +116,7 @@ impl<'a> Search<'a> {
                 .of_families(|family| family == Family::NominalParameter),
             nominal: NominalPrior::Stated(stated_std),
             budget: self.budget,
+            extended: Extended::default(),
         }
     }
 
@@ -371,13 +374,14 @@ impl<'a> Search<'a> {
         Ok(pool)
     }
 
-    /// Changes the best set by one effect, and again, as long as a better one is found. What was tried stays in the pool.
+    /// Changes the best set by one effect, and again, as long as a better one is found and the search has not ended. What was tried stays
+    /// in the pool.
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
     pub fn refine(&self, pool: &mut Vec<CandidateModel>) -> Result<(), EstimateError> {
         for _ in 0..ROUNDS {
-            let Some(best) = pool.first().cloned() else {
+            let Some(best) = pool.first().filter(|_| !self.is_spent()).cloned() else {
                 return Ok(());
             };
             (self.budget.progress)("changes to the best set");
@@ -388,7 +392,7 @@ impl<'a> Search<'a> {
                 let mut changed = self.grow(&best, i)?;
                 changed.extend(self.shrink(&best, i));
                 if let Ok(smaller) = self.fit(&self.without(&best, i)) {
-                    changed.extend(self.extend(&smaller, EXCHANGED)?);
+                    changed.extend(self.extend(&smaller, FITTED[1])?);
                     changed.push(smaller);
                 }
                 Ok(changed)
@@ -399,7 +403,7 @@ impl<'a> Search<'a> {
             pool.retain(|set| set.log_marginal_likelihood.is_finite());
             rank(pool);
             let stays = pool.first().is_none_or(|first| first.key() == best.key());
-            if stays || self.is_spent() {
+            if stays {
                 return Ok(());
             }
         }

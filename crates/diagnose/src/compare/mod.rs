@@ -174,6 +174,7 @@ fn found(pairing: &Pairing, problem: &Problem, diagnosis: &Diagnosis) -> Where {
         simulators: vec![],
         discrepancy: vec![discrepancy],
         initial: vec![vec![]],
+        own: vec![],
     };
     let rate = 1.0 / step;
     let driven = pairing.drives.iter().find_map(|u| look::main_line(u, rate));
