@@ -8,7 +8,6 @@ use simgap_effects::Placed;
 use simgap_simulate::Job;
 
 use crate::fit::{Known, fit_with};
-use crate::gram::{Gram, grams};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, discrepancy, linearise};
 use crate::merit::Merit;
@@ -33,8 +32,6 @@ pub struct Base<'a> {
     pub(crate) fit: &'a Fit,
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
-    /// Products of its sensitivities, run by run.
-    grams: Vec<Gram>,
     objective: f64,
     reach: Reach,
     pub(crate) weights: Vec<f64>,
@@ -73,7 +70,6 @@ pub(crate) struct Regressor {
 pub(crate) struct LinearSystem {
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
-    grams: Vec<Gram>,
     objective: f64,
     pub(crate) channel_weights: Vec<f64>,
     pub(crate) hessian: Mat<f64>,
@@ -105,12 +101,10 @@ impl LinearSystem {
         let merit = Merit::new(problem, weights);
         let (objective, variance) = merit.of(&layout, &theta, &at.discrepancy);
         let channel_weights = merit.weights(&variance);
-        let grams = grams(&at.columns, variance.len(), &[], &[]);
-        let (hessian, gradient) = normal_equations(&layout, &theta, &at, &grams, &channel_weights);
+        let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
         Ok(LinearSystem {
             layout,
             at,
-            grams,
             objective,
             channel_weights,
             hessian,
@@ -131,7 +125,6 @@ pub fn linearise_at<'a>(
     let LinearSystem {
         layout,
         at,
-        grams,
         objective,
         channel_weights,
         hessian,
@@ -150,7 +143,6 @@ pub fn linearise_at<'a>(
         fit,
         layout,
         at,
-        grams,
         objective,
         reach: Reach::of(problem, &fit.estimate.effects),
         weights: channel_weights,
@@ -194,7 +186,6 @@ impl Base<'_> {
         let known = Known {
             objective: self.objective,
             column: &column,
-            grams: &self.grams,
         };
         fit_with(self.problem, start, weights, false, Some(known))
     }

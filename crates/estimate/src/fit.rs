@@ -17,7 +17,6 @@
 use std::sync::Arc;
 
 use crate::curvature::Curvature;
-use crate::gram::Gram;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Column, Linearised, Probe, complete, probe};
 use crate::merit::Merit;
@@ -80,8 +79,6 @@ pub(crate) struct Known<'a> {
     pub(crate) objective: f64,
     /// By layout, run and place.
     pub(crate) column: &'a dyn Fn(&Layout, usize, usize) -> Option<Column>,
-    /// Their products, run by run.
-    pub(crate) grams: &'a [Gram],
 }
 
 /// As [`fit`], with sensitivities that are known already. Where a step with them does not come near the objective of
@@ -123,9 +120,7 @@ pub(crate) fn fit_with(
     let search = Line {
         layout: &layout,
         merit: &merit,
-        known: known.as_ref().map_or(&[], |known| known.grams),
     };
-    let mut grams = vec![];
     let along = |_: usize, place: usize| !(weights.keep_nuisance && layout.is_nuisance(place));
     let base = known.map_or(objective, |known| known.objective);
     if objective - base > stale {
@@ -133,8 +128,7 @@ pub(crate) fn fit_with(
         // whichever step goes further.
         let own = fresh(at.clone(), &theta)?;
         let reached = |at: &Linearised| {
-            let trial = (&mut FIRST_DAMPING.clone(), &mut vec![]);
-            let next = search.step(&theta, objective, at, trial, along);
+            let next = search.step(&theta, objective, at, &mut FIRST_DAMPING.clone(), along);
             next.map_or(objective, |next| next.objective)
         };
         if reached(&own) < reached(&at) {
@@ -149,8 +143,7 @@ pub(crate) fn fit_with(
     let mut iterations = 0;
     while iterations < weights.most_steps {
         iterations += 1;
-        let ways = (&mut damping, &mut grams);
-        let Some(next) = search.step(&theta, objective, &at, ways, along) else {
+        let Some(next) = search.step(&theta, objective, &at, &mut damping, along) else {
             if exact {
                 break;
             }
@@ -187,7 +180,7 @@ pub(crate) fn fit_with(
             (exact, taken_at) = (true, objective);
         }
     }
-    Ok(finish(&search, &theta, (at, &grams), iterations))
+    Ok(finish(&layout, &merit, &theta, at, iterations))
 }
 
 /// By how much the entry at a place in the list of [`Layout::entries`] was multiplied, where it is a shared size or factor; one elsewhere.
@@ -213,16 +206,14 @@ fn carried(column: &Column, ratio: f64) -> Column {
 }
 
 fn finish(
-    search: &Line<'_>,
+    layout: &Layout,
+    merit: &Merit<'_>,
     theta: &[f64],
-    (at, last): (Linearised, &[Gram]),
+    at: Linearised,
     iterations: usize,
 ) -> Fit {
-    let Line { layout, merit, .. } = *search;
-    let grams = search.grams(&at, last);
     let (objective, variance) = merit.of(layout, theta, &at.discrepancy);
-    let weights = merit.weights(&variance);
-    let (hessian, _) = normal_equations(layout, theta, &at, &grams, &weights);
+    let (hessian, _) = normal_equations(layout, theta, &at, &merit.weights(&variance));
     let all: Vec<usize> = (0..layout.len()).collect();
     let curvature = Curvature::of(layout, theta, &hessian);
     let spread = variances(&curvature.with_fixed_priors(), &all);

@@ -72,7 +72,6 @@ mod curvature;
 mod drift;
 mod effort;
 mod fit;
-mod gram;
 mod initial;
 mod joint;
 mod layout;

@@ -3,18 +3,16 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
-use crate::gram::Gram;
 use crate::layout::Layout;
 use crate::linearise::Linearised;
 use crate::products::inner_products;
 use crate::signals::Signals;
 
-/// H = Jᵀ W J + prior, g = Jᵀ W r − prior gradient, in units of the scales; the products of J are those of its runs.
+/// H = Jᵀ W J + prior, g = Jᵀ W r − prior gradient, in units of the scales.
 pub(crate) fn normal_equations(
     layout: &Layout,
     theta: &[f64],
     at: &Linearised,
-    grams: &[Gram],
     weights: &[f64],
 ) -> (Mat<f64>, Vec<f64>) {
     let len = layout.len();
@@ -22,11 +20,19 @@ pub(crate) fn normal_equations(
     let mut gradient = vec![0.0; len];
     for (run, columns) in at.columns.iter().enumerate() {
         let index = layout.entries(run).collect::<Vec<_>>();
-        add_symmetric(&mut hessian, &index, &grams[run].weighted(weights));
         let columns: Vec<&Signals> = columns.iter().map(AsRef::as_ref).collect();
-        let along = inner_products(&columns, &[&at.discrepancy[run]], weights, |_, _| true);
-        for (a, entry) in index.into_iter().enumerate() {
-            gradient[entry] += along[(a, 0)];
+        let last = columns.len();
+        let with_discrepancy = [&columns[..], &[&at.discrepancy[run]]].concat();
+        let is_wanted = |a: usize, b: usize| b <= a || b == last;
+        let products = inner_products(&columns, &with_discrepancy, weights, is_wanted);
+        for a in 0..last {
+            gradient[index[a]] += products[(a, last)];
+            for b in 0..=a {
+                hessian[(index[a], index[b])] += products[(a, b)];
+                if a != b {
+                    hessian[(index[b], index[a])] += products[(a, b)];
+                }
+            }
         }
     }
     for i in 0..len {
@@ -35,18 +41,6 @@ pub(crate) fn normal_equations(
         gradient[i] -= slope * layout.scale[i];
     }
     (hessian, gradient)
-}
-
-/// Adds products that are given below the diagonal and on it, by the entries of their rows.
-fn add_symmetric(sum: &mut Mat<f64>, index: &[usize], products: &Mat<f64>) {
-    for a in 0..index.len() {
-        for b in 0..=a {
-            sum[(index[a], index[b])] += products[(a, b)];
-            if a != b {
-                sum[(index[b], index[a])] += products[(a, b)];
-            }
-        }
-    }
 }
 
 /// A diagonal entry below this share of the largest belongs to a direction the data do not see.

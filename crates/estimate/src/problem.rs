@@ -191,7 +191,7 @@ impl Problem {
         jobs: &[Job<'_>],
     ) -> Vec<Result<Vec<Vec<f64>>, EstimateError>> {
         for job in jobs {
-            self.effort.add(job);
+            self.effort.add(job.run, self.model.dof_count());
         }
         predict_all(jobs)
     }

@@ -11,7 +11,6 @@
 use simgap_simulate::LANES;
 
 use crate::EstimateError;
-use crate::gram::{Gram, grams};
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Probe, discrepancies_of, probe};
 use crate::merit::Merit;
@@ -33,8 +32,6 @@ pub(crate) struct Next {
 pub(crate) struct Line<'a> {
     pub(crate) layout: &'a Layout,
     pub(crate) merit: &'a Merit<'a>,
-    /// Products of sensitivities that are known before.
-    pub(crate) known: &'a [Gram],
 }
 
 impl Line<'_> {
@@ -45,14 +42,13 @@ impl Line<'_> {
         theta: &[f64],
         objective: f64,
         at: &Linearised,
-        (damping, grams): (&mut f64, &mut Vec<Gram>),
+        damping: &mut f64,
         along: impl Fn(usize, usize) -> bool,
     ) -> Option<Next> {
         let layout = self.layout;
-        *grams = self.grams(at, grams);
         let (_, variance) = self.merit.of(layout, theta, &at.discrepancy);
         let weights = self.merit.weights(&variance);
-        let (hessian, gradient) = normal_equations(layout, theta, at, grams, &weights);
+        let (hessian, gradient) = normal_equations(layout, theta, at, &weights);
         let free: Vec<usize> = (0..layout.len())
             .filter(|&i| {
                 let outward = (theta[i] <= layout.lower[i] && gradient[i] < 0.0)
@@ -94,16 +90,6 @@ impl Line<'_> {
         }
         *damping *= 10f64.powi(MOST_DAMPINGS as i32);
         None
-    }
-
-    /// Products of the sensitivities at a point, with those of the last one.
-    pub(crate) fn grams(&self, at: &Linearised, last: &[Gram]) -> Vec<Gram> {
-        grams(
-            &at.columns,
-            at.discrepancy.first().map_or(0, Vec::len),
-            last,
-            self.known,
-        )
     }
 
     /// The first of several trials, in their order, that lowers the objective.

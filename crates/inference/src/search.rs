@@ -22,7 +22,6 @@ use simgap_estimate::{
 };
 
 use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
-use crate::extended::Extended;
 use crate::gap::{Gap, RELEVANT_SHARE};
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
@@ -34,7 +33,8 @@ const SURVIVORS: [usize; 2] = [5, 3];
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Sets that are fitted again under another noise model.
 const REFITTED: usize = 16;
-/// Candidates fitted beside the best set; in the place of one of its effects as many as beside a single one.
+/// Candidates fitted in the place of each effect of the best set, and beside it.
+const EXCHANGED: usize = 8;
 const ADDED: usize = 4;
 /// Effects of a set at the most; wrong nominal parameters besides.
 const MOST_EFFECTS: usize = 3;
@@ -81,7 +81,6 @@ pub struct Search<'a> {
     pub(crate) nominal: NominalPrior,
     /// When to stop.
     pub budget: Budget<'a>,
-    pub(crate) extended: Extended,
 }
 
 impl<'a> Search<'a> {
@@ -100,7 +99,6 @@ impl<'a> Search<'a> {
             space,
             nominal: NominalPrior::Wrong,
             budget,
-            extended: Extended::default(),
         }
     }
 
@@ -116,7 +114,6 @@ impl<'a> Search<'a> {
                 .of_families(|family| family == Family::NominalParameter),
             nominal: NominalPrior::Stated(stated_std),
             budget: self.budget,
-            extended: Extended::default(),
         }
     }
 
@@ -392,7 +389,7 @@ impl<'a> Search<'a> {
                 let mut changed = self.grow(&best, i)?;
                 changed.extend(self.shrink(&best, i));
                 if let Ok(smaller) = self.fit(&self.without(&best, i)) {
-                    changed.extend(self.extend(&smaller, FITTED[1])?);
+                    changed.extend(self.extend(&smaller, EXCHANGED)?);
                     changed.push(smaller);
                 }
                 Ok(changed)

@@ -57,11 +57,6 @@ impl ForceLaw for Gravity {
     }
 }
 
-/// Parts of [`Simulator::work_per_sample`]: of every step, of a law, of one that remembers its way.
-const OF_STEP: u64 = 4;
-const OF_LAW: u64 = 4;
-const OF_MEMORY: u64 = 24;
-
 impl Simulator {
     /// Puts the effects on the nominal model: first what changes its members and masses, then what adds masses,
     /// then forces and maps. `substeps` is used where nonlinear forces act (see [`crate::substeps_for`]); effects
@@ -199,19 +194,6 @@ impl Simulator {
             .map(|entry| Placed::from_entry(model, entry))
             .collect::<Result<Vec<_>, _>>()?;
         Simulator::new(model, &effects, crate::substeps_for(model, runs)?)
-    }
-
-    /// What a sample costs, about, in additions and products of a step without elements: n² for n coordinates, as every coordinate
-    /// moves every other, and what the laws of elements take.
-    #[must_use]
-    pub fn work_per_sample(&self) -> u64 {
-        let of_element = |element: &Element| match element.law.remembers() {
-            true => OF_MEMORY,
-            false => OF_LAW,
-        };
-        let coordinates = self.model.dof_count() as u64;
-        let of_elements: u64 = self.elements.iter().map(of_element).sum();
-        self.substeps as u64 * (coordinates * coordinates + OF_STEP + of_elements)
     }
 
     /// Length of the initial state: displacements, then velocities of the masses of the nominal
