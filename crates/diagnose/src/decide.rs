@@ -65,10 +65,8 @@ pub(crate) fn decide(
     };
     if decision.other.probability > LIKELIER_THAN_NOT {
         decision.status = Status::Unknown;
-        decision.start = match &decision.other.law {
-            Some(law) => law.fit.estimate.clone(),
-            None => base.fit.estimate.clone(),
-        };
+        let law = decision.other.law.as_ref();
+        decision.start = law.map_or(&base.fit, |law| &law.fit).estimate.clone();
     } else if best.effects().is_empty() {
         small_errors(search, first, &rms, &mut decision)?;
     } else if are_parameters(best.effects().iter()) {

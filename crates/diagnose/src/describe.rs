@@ -354,7 +354,7 @@ pub(crate) fn locations(decision: &Decision, is_unknown: bool) -> Vec<LocationSh
     shares
 }
 
-/// What to measure next when rivals are left.
+/// What to measure next: to tell rivals apart, or, where the cause is unknown, to see what it is.
 pub(crate) fn next_experiment(
     model: &Model,
     verdict: &Verdict,

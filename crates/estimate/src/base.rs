@@ -71,7 +71,7 @@ pub(crate) struct LinearSystem {
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
     objective: f64,
-    pub(crate) channel_weights: Vec<f64>,
+    channel_weights: Vec<f64>,
     pub(crate) hessian: Mat<f64>,
     gradient: Vec<f64>,
 }

@@ -15,8 +15,7 @@ use faer::{Mat, Side};
 
 use crate::base::LinearSystem;
 use crate::normal::factorise;
-use crate::products::{dot, inner_products};
-use crate::signals::Signals;
+use crate::products::dot;
 use crate::{EstimateError, Fit, FitOptions, Problem, Start};
 
 /// Variance of a value, in units of its own scale, from which the data do not see it at all.
@@ -35,61 +34,61 @@ pub fn spread(
     begun: &Start,
 ) -> Result<Vec<f64>, EstimateError> {
     let trained = LinearSystem::at(problem, fit, weights)?;
-    let shared = trained.layout.shared_len();
     let plain = FitOptions::white(others.model.outputs.len());
     let there = LinearSystem::of(others, begun, &plain)?;
-    let scale = |i: usize| trained.layout.scale[i] / there.layout.scale[i];
-    let steps = directions(&trained.hessian, shared).unwrap_or_default();
+    let mut steps = directions(&trained.hessian, trained.layout.shared_len()).unwrap_or_default();
+    // In units of the scales that the values have there.
+    for step in &mut steps {
+        for (i, step) in step.iter_mut().enumerate() {
+            *step *= trained.layout.scale[i] / there.layout.scale[i];
+        }
+    }
     let mut square = vec![0.0; others.model.outputs.len()];
-    for columns in &there.at.columns {
-        let columns: Vec<&Signals> = columns.iter().map(AsRef::as_ref).collect();
-        let (of_shared, of_own) = columns.split_at(shared.min(columns.len()));
-        let followed = past(of_shared, of_own, &there.channel_weights);
-        for step in &steps {
+    for (run, columns) in there.at.columns.iter().enumerate() {
+        for step in followed(&there, run, &steps) {
             for (c, square) in square.iter_mut().enumerate() {
-                let mut moved = vec![0.0; followed.first().map_or(0, |column| column[c].len())];
-                for (i, column) in followed.iter().enumerate() {
-                    add(&mut moved, step[i] * scale(i), &column[c]);
+                let mut moved = vec![0.0; others.runs[run].len];
+                for (share, column) in step.iter().zip(columns) {
+                    let values = moved.iter_mut().zip(&column[c]);
+                    values.for_each(|(moved, value)| *moved += share * value);
                 }
                 *square += dot(&moved, &moved);
             }
         }
     }
     let count: usize = others.runs.iter().map(|run| run.len).sum();
-    Ok(square
-        .into_iter()
-        .map(|square| square / count.max(1) as f64)
-        .collect())
+    square
+        .iter_mut()
+        .for_each(|sum| *sum /= count.max(1) as f64);
+    Ok(square)
 }
 
-/// K of (2): columns past others.
-fn past(columns: &[&Signals], others: &[&Signals], weights: &[f64]) -> Vec<Signals> {
-    let mut left: Vec<Signals> = columns.iter().map(|column| (*column).clone()).collect();
-    let own = inner_products(others, others, weights, |_, _| true);
-    let cross = inner_products(others, columns, weights, |_, _| true);
-    let all: Vec<usize> = (0..others.len()).collect();
-    let Some((factor, kept, scale)) = factorise(&own, &all, DAMPING) else {
-        return left;
+/// Steps of what all records share, each with those of what a run has of its own, which follow it: −H_own⁻¹ H_own,shared.
+fn followed(there: &LinearSystem, run: usize, steps: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let entries: Vec<usize> = there.layout.entries(run).collect();
+    let (shared, own) = entries.split_at(there.layout.shared_len());
+    let mut whole: Vec<Vec<f64>> = steps.to_vec();
+    whole
+        .iter_mut()
+        .for_each(|step| step.resize(entries.len(), 0.0));
+    let Some((factor, kept, scale)) = factorise(&there.hessian, own, DAMPING) else {
+        return whole;
     };
-    let right = Mat::from_fn(kept.len(), columns.len(), |i, j| {
-        cross[(kept[i], j)] / scale[i]
+    let pull = |entry: usize, step: &[f64]| -> f64 {
+        let each = shared.iter().zip(step);
+        each.map(|(&other, step)| there.hessian[(entry, other)] * step)
+            .sum()
+    };
+    let right = Mat::from_fn(kept.len(), steps.len(), |i, k| {
+        -pull(kept[i], &steps[k]) / scale[i]
     });
-    let taken = factor.solve(right);
-    for (j, left) in left.iter_mut().enumerate() {
-        for (i, &other) in kept.iter().enumerate() {
-            let share = taken[(i, j)] / scale[i];
-            for (left, other) in left.iter_mut().zip(others[other]) {
-                add(left, -share, other);
-            }
+    let follows = factor.solve(right);
+    for (k, step) in whole.iter_mut().enumerate() {
+        for (i, &entry) in kept.iter().enumerate() {
+            step[shared.len() + entry - own[0]] = follows[(i, k)] / scale[i];
         }
     }
-    left
-}
-
-fn add(sum: &mut [f64], factor: f64, signal: &[f64]) {
-    for (sum, value) in sum.iter_mut().zip(signal) {
-        *sum += factor * value;
-    }
+    whole
 }
 
 /// The columns of L of (1) over the first `shared` entries, in units of their scales.

@@ -4,7 +4,7 @@
 mod support;
 
 use simgap_effects::Placed;
-use simgap_estimate::{Fit, FitOptions, fit};
+use simgap_estimate::{Fit, FitOptions, Start, fit, fit_initial_states_from, spread};
 use simgap_model::Location;
 use support::{DAMPER, OSCILLATOR, between, drive, model, noisy, placed, problem, start, truth};
 
@@ -305,4 +305,54 @@ fn verify_a_summary_says_what_the_fit_says() {
     let read: simgap_estimate::FitSummary = serde_json::from_str(&text).unwrap();
     assert_eq!(read.effects, summary.effects);
     assert_eq!(read.initial, summary.initial);
+}
+
+/// The spread of another record, linearised, is that of its prediction with the only parameter a standard deviation away and an
+/// initial state that follows.
+#[test]
+fn verify_the_spread_of_other_records_is_that_of_predictions_that_follow() {
+    let model = model(OSCILLATOR);
+    let at = between("block", "ground");
+    let soft = placed("stiffness_error", at.clone(), &[1.07]);
+    let run = |size, initial: &[f64]| {
+        let input = drive(0.01, 400, size);
+        truth(&model, std::slice::from_ref(&soft), input, 0.01, initial)
+    };
+    let train = problem(&model, noisy(&run(6.0, &[0.002, -0.1]), 5e-4, 7));
+    let other = problem(&model, noisy(&run(2.0, &[-0.01, 0.3]), 5e-4, 8));
+    let from = start(vec![soft.clone()], vec![], &[0.0, 0.0]);
+    let found = fit(&train, &from, &strict()).unwrap();
+    let value = found.intervals[0][0];
+    let std = (value.ci95[1] - value.ci95[0]) / (2.0 * 1.959_964);
+    let predicted = |factor: f64| {
+        let moved = [placed("stiffness_error", at.clone(), &[factor])];
+        fit_initial_states_from(&other, &moved, vec![vec![-0.01, 0.3]], &strict()).unwrap()
+    };
+    let here = predicted(value.value);
+    let there = predicted(value.value + std);
+    let pairs = here.discrepancy[0][0].iter().zip(&there.discrepancy[0][0]);
+    let wanted = pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / 400.0;
+    let begun = Start {
+        initial: here.estimate.initial,
+        ..found.estimate.clone()
+    };
+    let spread = spread((&train, &found, &strict()), &other, &begun).unwrap();
+    assert!(
+        (spread[0] / wanted - 1.0).abs() < 0.01,
+        "{spread:?} instead of {wanted}"
+    );
+    // An initial state that stayed would make it another.
+    let fixed = Start {
+        nominal: vec![],
+        initial: begun.initial.clone(),
+        effects: vec![placed("stiffness_error", at, &[value.value + std])],
+    };
+    let held = FitOptions {
+        most_steps: 0,
+        ..strict()
+    };
+    let stays = fit(&other, &fixed, &held).unwrap();
+    let pairs = here.discrepancy[0][0].iter().zip(&stays.discrepancy[0][0]);
+    let without = pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / 400.0;
+    assert!(without > 1.1 * wanted, "{without} and {wanted}");
 }

@@ -378,9 +378,12 @@ impl<'a> Search<'a> {
     /// [`EstimateError`] when the model cannot be propagated.
     pub fn refine(&self, pool: &mut Vec<CandidateModel>) -> Result<(), EstimateError> {
         for _ in 0..ROUNDS {
-            let Some(best) = pool.first().filter(|_| !self.is_spent()).cloned() else {
+            let Some(best) = pool.first().cloned() else {
                 return Ok(());
             };
+            if self.is_spent() {
+                return Ok(());
+            }
             (self.budget.progress)("changes to the best set");
             if !self.is_full(&best) {
                 pool.extend(self.extend(&best, ADDED)?);
