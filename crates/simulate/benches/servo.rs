@@ -1,12 +1,12 @@
 //! A hydraulic axis of ten states against plants of two masses, 60 s at 1 kHz.
 //!
-//! `cargo bench -p simgap-simulate --bench servo`; the items counted are samples times sets. The axis has two chambers,
-//! a spool, a filter of second order on the measured position and a controller of second order; both orifices are solved in every
-//! step. The two masses are linear, or have dry friction and a cubic spring.
+//! `cargo bench -p simgap-simulate --bench servo`; the items counted are samples times sets. The two masses are linear, or have
+//! dry friction and a cubic spring.
 //!
 //! What the axis costs beside the others is printed first ([`turns`]).
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
+mod axis;
 mod turns;
 
 use divan::counter::ItemsCount;
@@ -14,53 +14,6 @@ use simgap_effects::{Placed, find};
 use simgap_model::{Location, Model};
 use simgap_simulate::{Simulator, predict_all};
 use turns::{SAMPLES, jobs, nanoseconds, run};
-
-const AXIS: &str = r#"schema = "simgap-model/1"
-name = "axis"
-[[mass]]
-name = "table"
-value = 1000.0
-[[damper]]
-name = "guide"
-between = ["table", "ground"]
-damping = 20000.0
-[[cylinder]]
-name = "drive"
-between = ["table", "ground"]
-areas = [2e-3, 1.5e-3]
-dead_volumes = [1e-4, 1e-4]
-stroke = 0.2
-bulk_modulus = 1.4e9
-leakage = 5e-12
-pressures = [9e6, 12e6]
-[[valve]]
-name = "servo"
-cylinder = "drive"
-from = "controller"
-rated_flow = 6.6667e-4
-rated_drop = 3.5e6
-natural_freq = 25.0
-damping_ratio = 0.7
-supply = 21e6
-[[block]]
-name = "filter"
-numerator = [1.0]
-denominator = [1e-5, 5e-3, 1.0]
-plus = ["table"]
-[[block]]
-name = "controller"
-numerator = [8.0, 4.0]
-denominator = [0.005, 1.0, 0.0]
-minus = ["filter"]
-[[input]]
-channel = "u"
-kind = "set_point"
-at = "controller"
-[[output]]
-channel = "y"
-kind = "displacement"
-at = "table"
-"#;
 
 const TWO_MASSES: &str = r#"schema = "simgap-model/1"
 name = "two masses"
@@ -125,17 +78,14 @@ fn set(plant: Plant, share: f64) -> Simulator {
                 place("cubic_stiffness", between("table"), 2e6),
             ],
         ),
-        ServoAxis => {
-            let chambers = Location::Between(["drive.p1".into(), "drive.p2".into()]);
-            (AXIS, vec![place("bulk_modulus", chambers, 0.9)])
-        }
+        ServoAxis => return axis::set(share),
     };
     Simulator::new(&Model::from_toml(text).unwrap(), &effects, 1).unwrap()
 }
 
 fn amplitude(plant: Plant) -> f64 {
     match plant {
-        ServoAxis => 0.002,
+        ServoAxis => axis::AMPLITUDE,
         TwoMasses | TwoMassesFrictionAndCubic => 12.0,
     }
 }

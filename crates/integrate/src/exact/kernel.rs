@@ -1,18 +1,19 @@
 //! The linear part of one step, for a number of degrees of freedom known to the compiler and for
 //! any number.
 
+use super::columns::Columns;
 use super::propagator::ExactPropagator;
 
 /// One step of `z₁ = Φ z₀ + Γ₀ f₀ + Γ₁ f₁`.
 pub(super) trait Kernel {
     /// The step, from `state` to `next` (displacements, then velocities).
-    fn step(&self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]);
+    fn step(&mut self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]);
 
     /// Adds Γ₁ f₁ to `next`.
-    fn push_end(&self, force: &[f64], next: &mut [f64]);
+    fn push_end(&mut self, force: &[f64], next: &mut [f64]);
 
     /// Adds (Γ₀ + Γ₁) f to `next`: a force held over the step.
-    fn push_held(&self, force: &[f64], next: &mut [f64]);
+    fn push_held(&mut self, force: &[f64], next: &mut [f64]);
 }
 
 /// A square block.
@@ -66,7 +67,7 @@ fn add_product<const N: usize>(block: &Block<N>, vector: &[f64; N], sum: &mut [f
 
 impl<const N: usize> Kernel for Fixed<N> {
     #[inline(always)]
-    fn step(&self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]) {
+    fn step(&mut self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]) {
         let (x, v) = (array::<N>(&state[..N]), array::<N>(&state[N..2 * N]));
         let (f0, f1) = (array::<N>(&before[..N]), array::<N>(&after[..N]));
         for (half, out) in next[..2 * N].chunks_exact_mut(N).enumerate() {
@@ -80,12 +81,12 @@ impl<const N: usize> Kernel for Fixed<N> {
     }
 
     #[inline(always)]
-    fn push_end(&self, force: &[f64], next: &mut [f64]) {
+    fn push_end(&mut self, force: &[f64], next: &mut [f64]) {
         push(&self.gamma1, force, next);
     }
 
     #[inline(always)]
-    fn push_held(&self, force: &[f64], next: &mut [f64]) {
+    fn push_held(&mut self, force: &[f64], next: &mut [f64]) {
         push(&self.held, force, next);
     }
 }
@@ -100,47 +101,118 @@ fn push<const N: usize>(blocks: &[Block<N>; 2], force: &[f64], next: &mut [f64])
     }
 }
 
-/// Any number of degrees of freedom, none included.
-pub(super) struct Dense<'a> {
-    propagator: &'a ExactPropagator,
-    held: Vec<f64>,
+/// Rows that are summed side by side: additions wait for each other within a row.
+const ROWS: usize = 8;
+
+/// Entries of a matrix, those of eight rows in a column beside each other.
+struct Rows {
+    columns: usize,
+    entries: Vec<[f64; ROWS]>,
 }
 
-impl<'a> Dense<'a> {
-    pub(super) fn new(propagator: &'a ExactPropagator) -> Dense<'a> {
-        let ends = propagator.gamma0.iter().zip(&propagator.gamma1);
-        Dense {
-            propagator,
-            held: ends.map(|(a, b)| a + b).collect(),
+impl Rows {
+    /// A matrix of so many rows and columns.
+    fn new([rows, columns]: [usize; 2], entry: impl Fn(usize, usize) -> f64) -> Rows {
+        let blocks = (0..rows).step_by(ROWS);
+        let places = blocks.flat_map(|first| (0..columns).map(move |column| (first, column)));
+        let eight = |(first, column): (usize, usize)| {
+            std::array::from_fn(|r| match first + r {
+                row if row < rows => entry(row, column),
+                _ => 0.0,
+            })
+        };
+        Rows {
+            columns,
+            entries: places.map(eight).collect(),
+        }
+    }
+
+    /// Adds the product with a column to `sums`, which has room for whole blocks of rows.
+    #[inline(always)]
+    fn add_product(&self, column: &[f64], sums: &mut [f64]) {
+        if self.columns == 0 {
+            return;
+        }
+        let blocks = self.entries.chunks_exact(self.columns);
+        for (block, sums) in blocks.zip(sums.chunks_exact_mut(ROWS)) {
+            let mut eight = array::<ROWS>(sums);
+            for (entries, value) in block.iter().zip(column) {
+                for r in 0..ROWS {
+                    eight[r] += entries[r] * value;
+                }
+            }
+            sums.copy_from_slice(&eight);
         }
     }
 }
 
-impl Kernel for Dense<'_> {
-    fn step(&self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]) {
-        next.fill(0.0);
-        add_rows(&self.propagator.gamma0, before, next);
-        add_rows(&self.propagator.gamma1, after, next);
-        add_rows(&self.propagator.phi, state, next);
+/// Any number of degrees of freedom, none included, without the columns that do nothing.
+pub(super) struct Compact {
+    columns: Columns,
+    /// [Γ₀ Γ₁ Φ] over the coordinates that are pushed and the parts of the state that move something.
+    step: Rows,
+    /// Γ₁, and Γ₀ + Γ₁, over the coordinates that elements push.
+    end: Rows,
+    held: Rows,
+    column: Vec<f64>,
+    sums: Vec<f64>,
+}
+
+impl Compact {
+    pub(super) fn new(propagator: &ExactPropagator, columns: Columns) -> Compact {
+        let (n, joined) = (propagator.dof_count, &columns.joined);
+        let (rows, wide) = (2 * n, 2 * columns.pushed.len() + columns.moving.len());
+        let forced = [rows, joined.len()];
+        let (gamma0, gamma1) = (&propagator.gamma0, &propagator.gamma1);
+        Compact {
+            step: Rows::new([rows, wide], |i, j| columns.step_entry(propagator, i, j)),
+            end: Rows::new(forced, |i, j| gamma1[i * n + joined[j]]),
+            held: Rows::new(forced, |i, j| {
+                let at = i * n + joined[j];
+                gamma0[at] + gamma1[at]
+            }),
+            column: Vec::with_capacity(wide),
+            sums: vec![0.0; rows.next_multiple_of(ROWS)],
+            columns,
+        }
     }
 
-    fn push_end(&self, force: &[f64], next: &mut [f64]) {
-        add_rows(&self.propagator.gamma1, force, next);
-    }
-
-    fn push_held(&self, force: &[f64], next: &mut [f64]) {
-        add_rows(&self.held, force, next);
+    #[inline(always)]
+    fn push(&mut self, is_end: bool, force: &[f64], next: &mut [f64]) {
+        let rows = next.len();
+        self.column.clear();
+        let joined = self.columns.joined.iter();
+        self.column.extend(joined.map(|i| force[*i]));
+        self.sums[..rows].copy_from_slice(next);
+        let matrix = if is_end { &self.end } else { &self.held };
+        matrix.add_product(&self.column, &mut self.sums);
+        next.copy_from_slice(&self.sums[..rows]);
     }
 }
 
-fn add_rows(matrix: &[f64], vector: &[f64], sum: &mut [f64]) {
-    if vector.is_empty() {
-        return;
-    }
-    for (row, out) in matrix.chunks_exact(vector.len()).zip(sum) {
-        for (a, b) in row.iter().zip(vector) {
-            *out += a * b;
+impl Kernel for Compact {
+    #[inline(always)]
+    fn step(&mut self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]) {
+        self.column.clear();
+        for force in [before, after] {
+            let pushed = self.columns.pushed.iter();
+            self.column.extend(pushed.map(|i| force[*i]));
         }
+        let moving = self.columns.moving.iter();
+        self.column.extend(moving.map(|i| state[*i]));
+        self.sums.fill(0.0);
+        self.step.add_product(&self.column, &mut self.sums);
+        next.copy_from_slice(&self.sums[..next.len()]);
+    }
+
+    #[inline(always)]
+    fn push_end(&mut self, force: &[f64], next: &mut [f64]) {
+        self.push(true, force, next);
+    }
+
+    #[inline(always)]
+    fn push_held(&mut self, force: &[f64], next: &mut [f64]) {
+        self.push(false, force, next);
     }
 }
 
@@ -151,7 +223,7 @@ mod tests {
     use simgap_model::StructuralMatrices;
 
     #[test]
-    fn verify_fixed_and_dense_agree() {
+    fn verify_fixed_and_compact_agree() {
         let band = |v: f64| {
             Mat::from_fn(3, 3, |i, j| match i.abs_diff(j) {
                 0 => 2.0 * v + i as f64,
@@ -166,18 +238,22 @@ mod tests {
         };
         let propagator = ExactPropagator::new(&structure, 0.02);
         let propagator = propagator.expect("a regular structure");
-        let (fixed, dense) = (Fixed::<3>::new(&propagator), Dense::new(&propagator));
+        let all = Columns {
+            moving: (0..6).collect(),
+            pushed: (0..3).collect(),
+            joined: (0..3).collect(),
+        };
+        let (mut fixed, mut compact) =
+            (Fixed::<3>::new(&propagator), Compact::new(&propagator, all));
         let state = [0.1, -0.2, 0.3, 1.0, -2.0, 0.5];
         let (f0, f1) = ([3.0, -1.0, 2.0], [0.5, 4.0, -2.0]);
         let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
         fixed.step(&state, &f0, &f1, &mut a);
-        dense.step(&state, &f0, &f1, &mut b);
+        compact.step(&state, &f0, &f1, &mut b);
         fixed.push_end(&f0, &mut a);
-        dense.push_end(&f0, &mut b);
+        compact.push_end(&f0, &mut b);
         fixed.push_held(&f1, &mut a);
-        dense.push_held(&f1, &mut b);
-        for (x, y) in a.iter().zip(&b) {
-            assert!((x - y).abs() < 1e-13, "{x} {y}");
-        }
+        compact.push_held(&f1, &mut b);
+        assert_eq!(a, b);
     }
 }

@@ -18,7 +18,8 @@
 //!
 //! References: \[Moreau1988\]; \[Hochbruck2010\], section 2.
 
-use super::kernel::{Dense, Fixed, Kernel};
+use super::columns::Columns;
+use super::kernel::{Compact, Fixed, Kernel};
 use super::law::Element;
 use super::plant::{Plant, spread};
 use super::propagator::ExactPropagator;
@@ -98,11 +99,15 @@ impl ExactPropagator {
         state.resize(2 * self.dof_count, 0.0);
         let mut plant = Plant::new(self, elements);
         match self.dof_count {
-            1 => plant.run(&Fixed::<1>::new(self), excitation, &mut state, observe),
-            2 => plant.run(&Fixed::<2>::new(self), excitation, &mut state, observe),
-            3 => plant.run(&Fixed::<3>::new(self), excitation, &mut state, observe),
-            4 => plant.run(&Fixed::<4>::new(self), excitation, &mut state, observe),
-            _ => plant.run(&Dense::new(self), excitation, &mut state, observe),
+            1 => plant.run(&mut Fixed::<1>::new(self), excitation, &mut state, observe),
+            2 => plant.run(&mut Fixed::<2>::new(self), excitation, &mut state, observe),
+            3 => plant.run(&mut Fixed::<3>::new(self), excitation, &mut state, observe),
+            4 => plant.run(&mut Fixed::<4>::new(self), excitation, &mut state, observe),
+            _ => {
+                let columns = Columns::new(&[self], elements, &[excitation.dof_force]);
+                let mut kernel = Compact::new(self, columns);
+                plant.run(&mut kernel, excitation, &mut state, observe);
+            }
         }
     }
 }
@@ -110,7 +115,7 @@ impl ExactPropagator {
 impl Plant<'_> {
     fn run(
         &mut self,
-        kernel: &impl Kernel,
+        kernel: &mut impl Kernel,
         excitation: &Excitation<'_>,
         state: &mut [f64],
         observe: &mut dyn FnMut(&Snapshot<'_>),
@@ -166,7 +171,7 @@ impl Plant<'_> {
     #[inline(always)]
     fn advance(
         &mut self,
-        kernel: &impl Kernel,
+        kernel: &mut impl Kernel,
         excitation: &Excitation<'_>,
         index: usize,
         [from, to]: [&Sample<'_>; 2],

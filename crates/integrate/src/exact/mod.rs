@@ -1,5 +1,6 @@
 //! Exact first-order-hold propagation of the linear part with nonlinear forces on top.
 
+mod columns;
 pub mod elementary;
 mod expm;
 mod kernel;

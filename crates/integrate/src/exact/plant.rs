@@ -314,7 +314,7 @@ impl<'a> Plant<'a> {
 
     /// Adds what S₁ and D₁ do to the free state, (1).
     #[inline(always)]
-    pub(super) fn push(&self, kernel: &impl Kernel, next: &mut [f64], net: &mut [f64]) {
+    pub(super) fn push(&self, kernel: &mut impl Kernel, next: &mut [f64], net: &mut [f64]) {
         net.fill(0.0);
         for (element, &s) in self.elements.iter().zip(&self.smooth) {
             spread(element, s, net);

@@ -5,12 +5,12 @@
 //! added to a row, and in which order, is as without.
 
 use pulp::{Arch, Simd, WithSimd};
-use simgap_model::Node;
 
 use super::row::{Row, State};
 use super::set::LaneSet;
 use super::wide::Wide;
 use super::{LANES, Pack};
+use crate::exact::columns::Columns;
 use crate::exact::propagator::ExactPropagator;
 
 /// Rows that are summed side by side.
@@ -125,11 +125,9 @@ pub(super) struct Compact {
     arch: Arch,
     /// [Γ₀ Γ₁ Φ] over the coordinates that are pushed and the parts of the state that move something.
     step: Rows,
-    pushed: Vec<usize>,
-    moving: Vec<usize>,
     /// Γ₁ over the coordinates that elements push.
     end: Rows,
-    joined: Vec<usize>,
+    columns: Columns,
     column: Vec<Pack>,
     sums: Vec<Pack>,
 }
@@ -138,35 +136,22 @@ impl Compact {
     pub(super) fn new(arch: Arch, sets: &[&LaneSet<'_>; LANES]) -> Compact {
         let propagators = sets.map(|set| set.propagator);
         let n = propagators[0].dof_count;
-        let joined: Vec<bool> = joined(sets, n);
-        let is_pushed: Vec<bool> = pushed(sets, &joined);
-        let list = |is: &[bool]| -> Vec<usize> { (0..n).filter(|i| is[*i]).collect() };
-        let (pushed, joined) = (list(&is_pushed), list(&joined));
-        let moves = |p: &ExactPropagator, j: usize| (0..2 * n).any(|i| p.phi[i * 2 * n + j] != 0.0);
-        let moving = (0..2 * n).filter(|j| propagators.iter().any(|p| moves(p, *j)));
-        let moving: Vec<usize> = moving.collect();
-        let k = pushed.len();
-        let columns = 2 * k + moving.len();
-        let step = Rows::new(&propagators, [2 * n, columns], |p, i, j| {
-            if j < k {
-                p.gamma0[i * n + pushed[j]]
-            } else if j < 2 * k {
-                p.gamma1[i * n + pushed[j - k]]
-            } else {
-                p.phi[i * 2 * n + moving[j - 2 * k]]
-            }
+        let forces = sets.map(|set| set.excitation.dof_force);
+        let columns = Columns::new(&propagators, sets[0].elements, &forces);
+        let wide = 2 * columns.pushed.len() + columns.moving.len();
+        let step = Rows::new(&propagators, [2 * n, wide], |p, i, j| {
+            columns.step_entry(p, i, j)
         });
+        let joined = &columns.joined;
         let end = Rows::new(&propagators, [2 * n, joined.len()], |p, i, j| {
             p.gamma1[i * n + joined[j]]
         });
         Compact {
             arch,
             step,
-            pushed,
-            moving,
             end,
-            joined,
-            column: Vec::with_capacity(columns),
+            columns,
+            column: Vec::with_capacity(wide),
             sums: vec![Pack::ZERO; (2 * n).next_multiple_of(ROWS)],
         }
     }
@@ -182,10 +167,11 @@ impl Compact {
         let n = x.len();
         self.column.clear();
         for force in forces {
-            self.column.extend(self.pushed.iter().map(|i| force[*i]));
+            self.column
+                .extend(self.columns.pushed.iter().map(|i| force[*i]));
         }
         let at = |&i: &usize| if i < n { x[i] } else { v[i - n] };
-        self.column.extend(self.moving.iter().map(at));
+        self.column.extend(self.columns.moving.iter().map(at));
         self.sums.fill(Pack::ZERO);
         self.step
             .add_product(self.arch, &self.column, &mut self.sums);
@@ -197,7 +183,8 @@ impl Compact {
         let (x, v) = (next.displacement.packs(), next.velocity.packs());
         let n = x.len();
         self.column.clear();
-        self.column.extend(self.joined.iter().map(|i| force[*i]));
+        self.column
+            .extend(self.columns.joined.iter().map(|i| force[*i]));
         self.sums[..n].copy_from_slice(x);
         self.sums[n..2 * n].copy_from_slice(v);
         self.end
@@ -211,35 +198,4 @@ impl Compact {
         next.displacement.packs_mut().copy_from_slice(x);
         next.velocity.packs_mut().copy_from_slice(v);
     }
-}
-
-/// Whether elements push each coordinate.
-fn joined(sets: &[&LaneSet<'_>; LANES], n: usize) -> Vec<bool> {
-    let mut joined = vec![false; n];
-    let nodes = sets[0].elements.iter().flat_map(|e| e.port.force);
-    for (i, _) in nodes.flat_map(Node::terms) {
-        joined[i] = true;
-    }
-    joined
-}
-
-/// Whether anything pushes each coordinate at any sample.
-fn pushed(sets: &[&LaneSet<'_>; LANES], joined: &[bool]) -> Vec<bool> {
-    let mut pushed = joined.to_vec();
-    for (l, set) in sets.iter().enumerate() {
-        let force = set.excitation.dof_force;
-        let known = sets[..l].iter();
-        if known
-            .into_iter()
-            .any(|other| std::ptr::eq(other.excitation.dof_force, force))
-        {
-            continue;
-        }
-        for row in force.chunks_exact(pushed.len()) {
-            for (pushed, force) in pushed.iter_mut().zip(row) {
-                *pushed |= *force != 0.0;
-            }
-        }
-    }
-    pushed
 }

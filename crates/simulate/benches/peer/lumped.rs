@@ -1,0 +1,113 @@
+//! Two linear masses, and one mass with dry friction and a cubic spring, as the march itself takes them.
+
+use faer::mat;
+use simgap_effects::{Action, find};
+use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSet, LaneSnapshot};
+use simgap_integrate::exact::{Element, ExactPropagator, Excitation};
+use simgap_model::{Node, StructuralMatrices};
+
+use crate::turns::SAMPLES;
+
+const STEP_S: f64 = 1e-3;
+
+/// Factor on the values of a set.
+fn size(set: usize, sets: usize) -> f64 {
+    1.0 + 0.05 * set as f64 / sets as f64
+}
+
+/// A propagator, what acts on it, and the coordinate that is written down.
+type Set = (ExactPropagator, Vec<Element>);
+
+/// What is called: the last output of each set.
+type Call = Box<dyn Fn() -> Vec<f64>>;
+
+pub(crate) fn linear(sets: usize) -> Call {
+    let set = |k| {
+        let f = size(k, sets);
+        let structure = StructuralMatrices {
+            mass_matrix: mat![[1.0, 0.0], [0.0, 0.5]],
+            damping_matrix: mat![[2.0 * f, -0.6 * f], [-0.6 * f, 0.6 * f]],
+            stiffness_matrix: mat![[1800.0 * f, -900.0 * f], [-900.0 * f, 900.0 * f]],
+        };
+        (ExactPropagator::new(&structure, STEP_S).unwrap(), vec![])
+    };
+    called((0..sets).map(set).collect(), 2)
+}
+
+pub(crate) fn friction(sets: usize) -> Call {
+    let set = |k| {
+        let f = size(k, sets);
+        let structure = StructuralMatrices {
+            mass_matrix: mat![[1.0]],
+            damping_matrix: mat![[2.0 * f]],
+            stiffness_matrix: mat![[900.0 * f]],
+        };
+        let laws = [("coulomb_friction", 1.5 * f), ("cubic_stiffness", 2e6 * f)];
+        let elements = laws.map(|(kind, value)| {
+            let Action::Force(law) = find(kind).unwrap().action(&[value]) else {
+                unreachable!("a force");
+            };
+            Element::between(Node::Dof(0), Node::Ground, law)
+        });
+        let propagator = ExactPropagator::new(&structure, STEP_S).unwrap();
+        (propagator, elements.into_iter().collect())
+    };
+    called((0..sets).map(set).collect(), 1)
+}
+
+/// One set alone, or all of them in lanes, under three sines on the first mass; the last displacement is written down.
+fn called(sets: Vec<Set>, n: usize) -> Call {
+    let wave = |k: usize| {
+        let t = STEP_S * k as f64;
+        12.0 * (25.0 * t).sin() + 9.0 * (33.0 * t).cos() + 3.0 * (9.0 * t).sin()
+    };
+    let force: Vec<f64> = (0..SAMPLES * n)
+        .map(|k| if k % n == 0 { wave(k / n) } else { 0.0 })
+        .collect();
+    Box::new(move || {
+        let excitation = Excitation {
+            dof_force: &force,
+            base_displacement: &[],
+            base_velocity: &[],
+            base_count: 0,
+            sample_count: SAMPLES,
+            start_s: 0.0,
+            substeps: 1,
+        };
+        let still = [0.0; 2];
+        let still = &still[..n];
+        if let [(propagator, elements)] = &sets[..] {
+            let mut output = Vec::with_capacity(SAMPLES);
+            propagator.march(elements, &excitation, still, still, &mut |at| {
+                output.push(at.displacement[n - 1]);
+            });
+            return output.last().copied().into_iter().collect();
+        }
+        let lanes = sets.iter().map(|(propagator, elements)| LaneSet {
+            propagator,
+            elements,
+            excitation,
+            displacement: still,
+            velocity: still,
+        });
+        let mut written = Written(Vec::with_capacity(SAMPLES));
+        Batch::new(lanes.collect()).unwrap().march(&mut written);
+        let last = written.0.last().copied().unwrap_or_default();
+        last.into_iter().collect()
+    })
+}
+
+/// The last displacement of eight sets at every sample.
+struct Written(Vec<[f64; LANES]>);
+
+impl LaneObserver for Written {
+    fn needs_acceleration(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn observe(&mut self, at: &LaneSnapshot<'_>) {
+        let last = at.displacement.len() - 1;
+        self.0.push(at.displacement[last].0);
+    }
+}
