@@ -256,9 +256,9 @@ fn outputs(model: &Model) -> impl Iterator<Item = &str> {
 #[must_use]
 pub fn idle_masses(model: &Model) -> Vec<String> {
     let between = |pair: &[String; 2], name: &str| pair.iter().any(|node| node == name);
+    let joined = model.joined();
     let used = |name: &str| {
-        model.springs.iter().any(|s| between(&s.between, name))
-            || model.dampers.iter().any(|d| between(&d.between, name))
+        joined.iter().any(|pair| between(pair, name))
             || model.inputs.iter().any(|input| input.at == name)
             || model.pendulums.iter().any(|pendulum| pendulum.at == name)
             || model.outputs.iter().any(|output| {
@@ -274,14 +274,8 @@ pub fn idle_masses(model: &Model) -> Vec<String> {
                 _ => false,
             })
     };
-    // Of a body, its points may be used instead; beams, cylinders and blocks join by themselves.
-    let own = |name: &str| model.body_of(name).is_some() || model.is_beam_coordinate(name);
-    let beams = model.beams.iter().map(|beam| &beam.between);
-    let cylinders = model.cylinders.iter().map(|cylinder| &cylinder.between);
-    let joined: Vec<&String> = beams.chain(cylinders).flatten().collect();
-    let is_idle = |name: &String| {
-        !(used(name) || own(name) || model.is_internal(name) || joined.contains(&name))
-    };
+    // Coordinates of elements are theirs to use.
+    let is_idle = |name: &String| !used(name) && model.coordinate_kind(name).is_none();
     let masses = model.masses.iter().filter(|mass| is_idle(&mass.name));
     masses
         .map(|mass| {

@@ -176,7 +176,7 @@ pub fn operating_point(model: &Model) -> (Vec<f64>, Vec<String>) {
         ));
     }
     let at = model.equilibrium().unwrap_or_else(|error| {
-        if model.cylinders.is_empty() {
+        if model.elements.cylinders.is_empty() {
             notes.push(format!("linearised about zero displacement: {error}"));
         } else {
             notes.push("linearised about the start: zero displacement, valves in their middle, the pressures of the cylinders".to_owned());

@@ -287,13 +287,13 @@ pub fn sites(model: &Model, kind: SiteKind) -> Vec<Location> {
             loads.any(|load| load.at == mass && load.value != 0.0)
         }),
         SiteKind::Chambers => {
-            let cylinders = model.cylinders.iter();
+            let cylinders = model.elements.cylinders.iter();
             cylinders
                 .map(|cylinder| Location::Between(cylinder.chambers()))
                 .collect()
         }
         SiteKind::Spool => {
-            let valves = model.valves.iter();
+            let valves = model.elements.valves.iter();
             valves.map(|valve| Location::Mass(valve.spool())).collect()
         }
         SiteKind::Input => model
@@ -345,7 +345,7 @@ fn places(model: &Model) -> impl Iterator<Item = &str> {
 
 /// The points of bodies.
 fn points(model: &Model) -> impl Iterator<Item = String> + '_ {
-    let bodies = model.bodies.iter();
+    let bodies = model.elements.bodies.iter();
     bodies.flat_map(|body| body.points.iter().map(|point| body.node_name(point)))
 }
 

@@ -78,7 +78,7 @@ fn matrix_entries(model: &Model) -> Vec<f64> {
         entries.extend((0..n).flat_map(|i| (0..n).map(move |j| matrix[(i, j)])));
     }
     // What of a valve is no entry of a matrix.
-    for valve in &model.valves {
+    for valve in &model.elements.valves {
         for spool in [-0.5, -0.01, 0.004, 0.3] {
             entries.extend([0, 1].map(|chamber| valve.flow(chamber, spool, 4e6)));
         }

@@ -77,13 +77,13 @@ fn verify_air_makes_the_oil_softer() {
     let [after, _] = of_pressures(&with("bulk_modulus", &[0.8]));
     near(after[0][0], before[0][0] / 0.8);
     let model = with("bulk_modulus", &[0.8]);
-    let (air, none) = (&model.cylinders[0], &hydraulic().cylinders[0]);
+    let (air, none) = (&model.elements.cylinders[0], &hydraulic().cylinders[0]);
     near(air.oil_stiffness(), 0.8 * none.oil_stiffness());
 }
 
 /// Flow into chamber 1 at 4 MPa.
 fn flow(model: &Model, spool: f64) -> f64 {
-    model.valves[0].flow(0, spool, 4e6)
+    model.elements.valves[0].flow(0, spool, 4e6)
 }
 
 /// Turbulent flow: the laminar part is off by (δ/Δp)²/4.
@@ -100,7 +100,7 @@ fn verify_a_valve_passes_its_rated_flow() {
     // No more than fully open.
     assert_eq!(flow(&model, 3.0), flow(&model, 1.0));
     // Out of the other chamber as the valve opens.
-    let out = model.valves[0].flow(1, 0.3, 4e6);
+    let out = model.elements.valves[0].flow(1, 0.3, 4e6);
     assert!((out / (-gain * 0.3 * 4e6_f64.sqrt()) - 1.0).abs() < TURBULENT);
 }
 
@@ -128,7 +128,7 @@ fn verify_a_supply_sags_with_the_flow_it_gives() {
     let found = flow(&model, 0.8);
     // Q² = w² (p_s − R Q − p)
     let mut sagged = plain.clone();
-    sagged.valves[0].supply -= droop * found;
+    sagged.elements.valves[0].supply -= droop * found;
     assert!((flow(&sagged, 0.8) / found - 1.0).abs() < TURBULENT);
     // The draining edge does not feel it.
     assert_eq!(flow(&model, -0.8), flow(&plain, -0.8));

@@ -1,7 +1,7 @@
 //! The checks that make a list of parts a model.
 
 use crate::refuse::{check_gain, check_uncertainty, finite, item, node_name, unique};
-use crate::{Location, Model, ModelError, Node, OutputKind};
+use crate::{CoordinateKind, Location, Model, ModelError, Node, OutputKind};
 
 impl Model {
     /// Checks that the parts make a model; [`Model::from_toml`] has done so.
@@ -15,12 +15,10 @@ impl Model {
         self.check_inputs()?;
         self.check_outputs()?;
         self.check_forces()?;
-        self.check_blocks()?;
-        self.check_laws()?;
-        for cylinder in &self.cylinders {
-            let place = item("cylinder", &cylinder.name);
-            self.check_pair(&cylinder.between, &place)?;
+        for element in self.elements.each() {
+            element.check(self)?;
         }
+        self.check_laws()?;
         for (i, effect) in self.effects.iter().enumerate() {
             let place = format!("[[effect]] {} \"{}\"", i + 1, effect.kind);
             self.check_location(&effect.at, &place)?;
@@ -51,24 +49,15 @@ impl Model {
             }
             check_uncertainty(&place, mass.uncertainty)?;
         }
-        let bodies = self.bodies.iter();
-        for (body, point) in bodies.flat_map(|b| b.points.iter().map(move |p| (b, p))) {
-            let place = item("point", &body.node_name(point));
-            node_name(&place, &point.name)?;
-            finite(&place, "offset", point.offset_m)?;
-        }
         Ok(())
     }
 
     /// Table and key of the model file that the inertia of a coordinate stands in, and what it must be.
     fn told_mass(&self, name: &str) -> [&'static str; 3] {
-        let of_body = |body: &crate::Body| body.name == name || body.roll() == name;
-        if self.is_roll(name) {
-            ["body", "inertia", "a positive moment of inertia"]
-        } else if self.bodies.iter().any(of_body) {
-            ["body", "mass", "a positive mass"]
-        } else {
-            ["mass", "value", "a positive mass"]
+        match self.coordinate_kind(name) {
+            Some(CoordinateKind::Roll) => ["body", "inertia", "a positive moment of inertia"],
+            Some(CoordinateKind::Place) => ["body", "mass", "a positive mass"],
+            _ => ["mass", "value", "a positive mass"],
         }
     }
 

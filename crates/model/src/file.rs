@@ -4,57 +4,88 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::body::file::{BodyFile, PointFile};
+use crate::element::Table;
+use crate::elements::for_elements;
 use crate::law::file::LawFile;
-use crate::refuse::item;
 use crate::{
-    Beam, Block, Cylinder, Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError,
-    Output, Pendulum, PlantParameter, PlantPort, Spring, Valve,
+    Damper, EffectEntry, Input, Load, Location, Mass, Model, ModelError, Output, Pendulum,
+    PlantParameter, PlantPort, Spring,
 };
 
 /// The schema this version reads and writes.
 pub const SCHEMA: &str = "simgap-model/1";
 
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ModelFile {
-    schema: String,
-    name: String,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    mass: Vec<Mass>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    body: Vec<BodyFile>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    point: Vec<PointFile>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    beam: Vec<Beam>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    cylinder: Vec<Cylinder>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    valve: Vec<Valve>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    block: Vec<Block>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    spring: Vec<Spring>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    damper: Vec<Damper>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    input: Vec<Input>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    output: Vec<Output>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    load: Vec<Load>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pendulum: Vec<Pendulum>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    parameter: Vec<PlantParameter>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    port: Vec<PlantPort>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    law: Vec<LawFile>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    effect: Vec<EffectFile>,
+macro_rules! model_file {
+    ($($(#[$doc:meta])* $list:ident: $Kind:ident { $($table:ident: $File:ty),* })*) => {
+        #[derive(Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct ModelFile {
+            schema: String,
+            name: String,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            mass: Vec<Mass>,
+            $($(
+                #[serde(default, skip_serializing_if = "Vec::is_empty")]
+                $table: Vec<$File>,
+            )*)*
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            spring: Vec<Spring>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            damper: Vec<Damper>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            input: Vec<Input>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            output: Vec<Output>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            load: Vec<Load>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pendulum: Vec<Pendulum>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            parameter: Vec<PlantParameter>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            port: Vec<PlantPort>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            law: Vec<LawFile>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            effect: Vec<EffectFile>,
+        }
+
+        impl ModelFile {
+            /// The model and its elements, without anything else.
+            fn of_elements(model: &Model) -> ModelFile {
+                ModelFile {
+                    schema: SCHEMA.into(),
+                    name: model.name.clone(),
+                    mass: vec![],
+                    $($($table: Table::all_of(model),)*)*
+                    spring: vec![],
+                    damper: vec![],
+                    input: vec![],
+                    output: vec![],
+                    load: vec![],
+                    pendulum: vec![],
+                    parameter: vec![],
+                    port: vec![],
+                    law: vec![],
+                    effect: vec![],
+                }
+            }
+
+            /// Adds the elements to a model that has its masses.
+            fn add_elements(&mut self, model: &mut Model) -> Result<(), ModelError> {
+                $($(
+                    let tables = std::mem::take(&mut self.$table).into_iter();
+                    for table in tables {
+                        table.add_to(model)?;
+                    }
+                )*)*
+                Ok(())
+            }
+        }
+    };
 }
+
+for_elements!(model_file);
 
 #[derive(Serialize, Deserialize)]
 struct EffectFile {
@@ -154,7 +185,7 @@ impl Model {
     /// # Ok::<(), simgap_model::ModelError>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Model, ModelError> {
-        let file: ModelFile = toml::from_str(text).map_err(|error| {
+        let mut file: ModelFile = toml::from_str(text).map_err(|error| {
             let (line, column) = error
                 .span()
                 .map_or((1, 1), |span| place_of(text, span.start));
@@ -171,17 +202,23 @@ impl Model {
                 needed: SCHEMA,
             });
         }
-        let effects = file
-            .effect
+        let effects = std::mem::take(&mut file.effect)
             .into_iter()
             .enumerate()
             .map(|(i, effect)| effect.into_entry(i))
             .collect::<Result<Vec<_>, _>>()?;
-        let laws = file.law.into_iter();
+        let laws = std::mem::take(&mut file.law).into_iter();
         let laws = laws.map(|law| law.into_law(text, &|offset| place_of(text, offset)));
+        let laws = laws.collect::<Result<Vec<_>, _>>()?;
         let mut model = Model {
-            name: file.name,
-            masses: file.mass,
+            name: std::mem::take(&mut file.name),
+            masses: std::mem::take(&mut file.mass),
+            ..Model::default()
+        };
+        file.add_elements(&mut model)?;
+        // A beam has pushed its spring: those of the file come first.
+        file.spring.append(&mut model.springs);
+        let model = Model {
             springs: file.spring,
             dampers: file.damper,
             inputs: file.input,
@@ -190,45 +227,12 @@ impl Model {
             pendulums: file.pendulum,
             plant_parameters: file.parameter,
             ports: file.port,
-            laws: laws.collect::<Result<Vec<_>, _>>()?,
+            laws,
             effects,
-            ..Model::default()
+            ..model
         };
-        file.body
-            .into_iter()
-            .for_each(|body| body.add_to(&mut model));
-        for point in file.point {
-            let place = item("point", &point.name);
-            let found = format!("body = \"{}\"", point.body);
-            let placed = point.add_to(&mut model);
-            placed.ok_or_else(|| ModelError::Shape {
-                place,
-                found,
-                needed: "the name of a [[body]]".into(),
-            })?;
-        }
-        for beam in file.beam {
-            model.add_beam(beam)?;
-        }
-        for cylinder in file.cylinder {
-            model.add_cylinder(cylinder)?;
-        }
-        for valve in file.valve {
-            model.add_valve(valve)?;
-        }
-        for block in file.block {
-            model.add_block(block)?;
-        }
         model.check()?;
         Ok(model)
-    }
-
-    /// Whether the inertia of a coordinate is written with a body or a beam.
-    fn is_written_elsewhere(&self, coordinate: &str) -> bool {
-        let of_body = |body: &crate::Body| body.name == coordinate || body.roll() == coordinate;
-        self.bodies.iter().any(of_body)
-            || self.is_beam_coordinate(coordinate)
-            || self.is_internal(coordinate)
     }
 
     /// Writes the model as the text of a model file; [`Model::from_toml`] reads it back unchanged.
@@ -236,26 +240,13 @@ impl Model {
     /// # Errors
     /// [`ModelError::Syntax`] when the model cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, ModelError> {
+        let masses = self.masses.iter();
+        let masses = masses.filter(|mass| self.coordinate_kind(&mass.name).is_none());
+        let springs = self.springs.iter();
+        let springs = springs.filter(|spring| !self.is_of_element(spring));
         let file = ModelFile {
-            schema: SCHEMA.into(),
-            name: self.name.clone(),
-            mass: {
-                let own = self.masses.iter();
-                let own = own.filter(|mass| !self.is_written_elsewhere(&mass.name));
-                own.cloned().collect()
-            },
-            body: BodyFile::all_of(self),
-            point: PointFile::all_of(self),
-            beam: self.stated_beams(),
-            cylinder: self.cylinders.clone(),
-            valve: self.valves.clone(),
-            block: self.blocks.clone(),
-            spring: {
-                let own = self.springs.iter();
-                own.filter(|spring| !self.is_of_beam(spring))
-                    .cloned()
-                    .collect()
-            },
+            mass: masses.cloned().collect(),
+            spring: springs.cloned().collect(),
             damper: self.dampers.clone(),
             input: self.inputs.clone(),
             output: self.outputs.clone(),
@@ -265,6 +256,7 @@ impl Model {
             port: self.ports.clone(),
             law: self.laws.iter().map(LawFile::from_law).collect(),
             effect: self.effects.iter().map(EffectFile::from_entry).collect(),
+            ..ModelFile::of_elements(self)
         };
         toml::to_string(&file).map_err(|error| ModelError::Syntax {
             line: 0,

@@ -39,18 +39,17 @@
 
 #[cfg(feature = "ndarray")]
 mod arrays;
-mod beam;
 mod between_samples;
-mod block;
-mod body;
 mod check;
+mod coordinate;
 mod dense;
+mod drawing;
+mod element;
+mod elements;
 mod error;
 mod file;
 mod frf;
-mod hydraulics;
 mod input;
-mod joined;
 mod law;
 mod matrices;
 mod model;
@@ -67,14 +66,13 @@ pub mod serial;
 mod travel;
 mod uncertainty;
 
-pub use beam::{Beam, BeamValue};
 pub use between_samples::BetweenSamples;
-pub use block::Block;
-pub use body::{Body, Point};
+pub use coordinate::CoordinateKind;
+pub use drawing::{Drawing, Glyph};
+pub use elements::*;
 pub use error::ModelError;
 pub use file::SCHEMA;
 pub use frf::{FrfKind, frequency_response};
-pub use hydraulics::{Cylinder, DriveValue, Edges, PRESSURE_UNIT_PA, Valve};
 pub use input::{Input, InputKind};
 pub use law::{Expression, Function, Known, Law, LawParameter, Operation, Symbol};
 pub use matrices::StructuralMatrices;

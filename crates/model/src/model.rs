@@ -4,9 +4,8 @@ use faer::Mat;
 
 use crate::refuse::item;
 use crate::{
-    Beam, Block, Body, Cylinder, Damper, EffectEntry, GROUND, Input, InputKind, Law, Load, Mass,
-    ModelError, Node, Output, Pendulum, PlantParameter, PlantPort, Spring, StructuralMatrices,
-    Valve,
+    Damper, EffectEntry, Elements, GROUND, Input, InputKind, Law, Load, Mass, ModelError, Node,
+    Output, Pendulum, PlantParameter, PlantPort, Spring, StructuralMatrices,
 };
 
 /// A lumped model of any number of degrees of freedom, none included.
@@ -24,16 +23,8 @@ pub struct Model {
     pub name: String,
     /// The inertia of each coordinate: masses, then those of bodies and beams, then those that effects add.
     pub masses: Vec<Mass>,
-    /// Rigid bodies, whose coordinates are among the masses.
-    pub bodies: Vec<Body>,
-    /// Beams, whose coordinates are among the masses and whose static stiffness is among the springs.
-    pub beams: Vec<Beam>,
-    /// Cylinders, whose pressures are rates of coordinates among the masses.
-    pub cylinders: Vec<Cylinder>,
-    /// Valves, whose spools are coordinates among the masses.
-    pub valves: Vec<Valve>,
-    /// Controllers, filters and sensors, whose states are rates of coordinates among the masses.
-    pub blocks: Vec<Block>,
+    /// Bodies, beams, cylinders, valves and blocks, whose coordinates are among the masses.
+    pub elements: Elements,
     /// Linear springs.
     pub springs: Vec<Spring>,
     /// Linear dampers.
@@ -90,28 +81,13 @@ impl Model {
         self.masses.iter().position(|mass| mass.name == name)
     }
 
-    /// Of each coordinate whether only its rate counts: a pressure or a state of a block, an equation of first order.
-    #[must_use]
-    pub fn first_order(&self) -> Vec<bool> {
-        let names = self.masses.iter().map(|mass| mass.name.as_str());
-        names
-            .map(|name| self.chamber(name).is_some() || self.is_block_state(name))
-            .collect()
-    }
-
-    /// Whether a coordinate is no place on the machine: a mode of a beam, a pressure, a spool, a state of a block.
-    #[must_use]
-    pub fn is_internal(&self, coordinate: &str) -> bool {
-        self.is_beam_mode(coordinate)
-            || self.chamber(coordinate).is_some()
-            || self.is_block_state(coordinate)
-            || self.valves.iter().any(|valve| valve.spool() == coordinate)
-    }
-
-    /// Whether a coordinate is a pressure, a spool or a state of a block, whose sizes are not those of the motion.
-    #[must_use]
-    pub fn has_own_scale(&self, coordinate: &str) -> bool {
-        self.is_internal(coordinate) && !self.is_beam_mode(coordinate)
+    /// A coordinate whose inertia follows from its element.
+    pub(crate) fn push_coordinate(&mut self, name: String) {
+        self.masses.push(Mass {
+            name,
+            value: 1.0,
+            uncertainty: None,
+        });
     }
 
     /// Number of degrees of freedom.
@@ -175,16 +151,10 @@ impl Model {
             let pair = self.resolve_pair(&damper.between, || item("damper", &damper.name))?;
             add_member(&mut matrices.damping_matrix, pair, damper.damping);
         }
-        for beam in &self.beams {
-            self.add_beam_matrices(beam, &mut matrices)?;
+        for element in self.elements.each() {
+            element.add_matrices(self, &mut matrices)?;
         }
-        for cylinder in &self.cylinders {
-            self.add_cylinder_matrices(cylinder, &mut matrices)?;
-        }
-        for valve in &self.valves {
-            self.add_valve_matrices(valve, &mut matrices);
-        }
-        self.add_block_matrices(&mut matrices)?;
+        self.add_signal_matrices(&mut matrices)?;
         Ok(matrices)
     }
 
@@ -234,8 +204,8 @@ impl Model {
                 node.push(load.value, &mut loads);
             }
         }
-        for cylinder in &self.cylinders {
-            self.add_cylinder_loads(cylinder, &mut loads);
+        for element in self.elements.each() {
+            element.add_loads(self, &mut loads);
         }
         loads
     }

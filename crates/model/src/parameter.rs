@@ -1,6 +1,6 @@
 //! The values of a model file that the linear part of the plant depends on.
 
-use crate::{BeamValue, DriveValue, Model};
+use crate::Model;
 
 /// A value of the model file that the linear part of the plant depends on, by its place in the list.
 #[derive(
@@ -16,10 +16,9 @@ pub enum Parameter {
     Damper(usize),
     /// `value` of a pendulum.
     Pendulum(usize),
-    /// A value of a beam.
-    Beam(usize, BeamValue),
-    /// A value of a cylinder, a valve or a block, by its place among these.
-    Drive(usize, DriveValue),
+    /// A value of an element, by the place of the element among all ([`Model::elements`], kind by kind) and that of the value
+    /// among its own.
+    Element([usize; 2]),
 }
 
 impl Model {
@@ -28,26 +27,20 @@ impl Model {
     pub fn parameters(&self) -> Vec<Parameter> {
         let masses = self.masses.iter().enumerate();
         let masses = masses
-            .filter(|(_, mass)| {
-                !(self.is_beam_coordinate(&mass.name) || self.is_internal(&mass.name))
-            })
+            .filter(|(_, mass)| self.has_stated_inertia(&mass.name))
             .map(|(i, _)| Parameter::Mass(i));
         let springs = self.springs.iter().enumerate();
         let springs = springs
-            .filter(|(_, spring)| !self.is_of_beam(spring))
+            .filter(|(_, spring)| !self.is_of_element(spring))
             .map(|(i, _)| Parameter::Spring(i));
-        let beams = (0..self.beams.len())
-            .flat_map(|i| BeamValue::ALL.map(|value| Parameter::Beam(i, value)));
-        let drives = self.drive_values().into_iter();
-        let drives = drives.map(|(i, value)| Parameter::Drive(i, value));
+        let elements = self.element_values().into_iter().map(Parameter::Element);
         let dampers = (0..self.dampers.len()).map(Parameter::Damper);
         let pendulums = (0..self.pendulums.len()).map(Parameter::Pendulum);
         masses
             .chain(springs)
             .chain(dampers)
             .chain(pendulums)
-            .chain(beams)
-            .chain(drives)
+            .chain(elements)
             .collect()
     }
 
@@ -59,8 +52,7 @@ impl Model {
             Parameter::Spring(i) => self.springs.get(i).map(|spring| spring.stiffness),
             Parameter::Damper(i) => self.dampers.get(i).map(|damper| damper.damping),
             Parameter::Pendulum(i) => self.pendulums.get(i).map(|pendulum| pendulum.value),
-            Parameter::Beam(i, value) => self.beam_value(i, value),
-            Parameter::Drive(i, value) => self.drive_value(i, value),
+            Parameter::Element(place) => self.element_value(place).map(|(_, value)| value),
         }
     }
 
@@ -79,11 +71,7 @@ impl Model {
             Parameter::Spring(i) => named("spring", self.springs.get(i).map(|part| &part.name)),
             Parameter::Damper(i) => named("damper", self.dampers.get(i).map(|part| &part.name)),
             Parameter::Pendulum(i) => named("pendulum", self.pendulums.get(i).map(|part| &part.at)),
-            Parameter::Beam(i, value) => {
-                let beam = named("beam", self.beams.get(i).map(|part| &part.name));
-                format!("{beam} {}", value.name())
-            }
-            Parameter::Drive(i, value) => self.drive_value_name(i, value),
+            Parameter::Element(place) => self.element_value_name(place),
         }
     }
 }

@@ -6,7 +6,9 @@ use faer::{Mat, c64};
 
 use crate::dense;
 use crate::modes::balanced;
-use crate::{Model, ModelError, Parameter, StructuralMatrices, frequency_response, state_matrix};
+use crate::{
+    Elements, Model, ModelError, Parameter, StructuralMatrices, frequency_response, state_matrix,
+};
 
 /// A pole, and its derivative with respect to each parameter in the order of [`Model::parameters`].
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -120,30 +122,21 @@ impl Model {
             found: format!("{parameter:?}"),
             needed: "a part of the model".into(),
         };
-        if let Parameter::Beam(i, value) = parameter {
-            let at = self.beam_value(i, value).ok_or_else(missing)?;
-            let mut part = self.beam_alone(i).ok_or_else(missing)?;
-            let [mass, damping, stiffness] = value.powers().map(|power| power / at);
-            part.mass_matrix *= faer::Scale(mass);
-            part.damping_matrix *= faer::Scale(damping);
-            part.stiffness_matrix *= faer::Scale(stiffness);
-            return Ok(part);
-        }
-        if let Parameter::Drive(i, value) = parameter {
-            return self.drive_matrices(i, value)?.ok_or_else(missing);
+        if let Parameter::Element(place) = parameter {
+            return self.element_derivative(place)?.ok_or_else(missing);
         }
         // The matrices are linear in the other parameters: those of the part alone, with the value one.
         let mut part = Model {
             masses: self.masses.clone(),
-            bodies: self.bodies.clone(),
+            elements: Elements {
+                bodies: self.elements.bodies.clone(),
+                ..Elements::default()
+            },
             inputs: self.inputs.clone(),
             ..Model::default()
         };
         match parameter {
-            Parameter::Mass(_)
-            | Parameter::Pendulum(_)
-            | Parameter::Beam(..)
-            | Parameter::Drive(..) => (),
+            Parameter::Mass(_) | Parameter::Pendulum(_) | Parameter::Element(_) => (),
             Parameter::Spring(i) => {
                 let mut spring = self.springs.get(i).ok_or_else(missing)?.clone();
                 spring.stiffness = 1.0;
@@ -167,10 +160,7 @@ impl Model {
                 alone.pendulums = vec![only];
                 matrices.stiffness_matrix = alone.linearise(displacements)?.stiffness_matrix;
             }
-            Parameter::Spring(_)
-            | Parameter::Damper(_)
-            | Parameter::Beam(..)
-            | Parameter::Drive(..) => (),
+            Parameter::Spring(_) | Parameter::Damper(_) | Parameter::Element(_) => (),
         }
         Ok(matrices)
     }

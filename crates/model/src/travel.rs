@@ -16,7 +16,7 @@ impl Model {
             Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => return None,
         };
         // How a body that rolls is held, springs between nodes do not say.
-        if !self.bodies.is_empty() {
+        if self.masses.iter().any(|mass| self.is_roll(&mass.name)) {
             return None;
         }
         let groups = self.groups();

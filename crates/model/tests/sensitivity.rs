@@ -73,7 +73,7 @@ fn with(model: &Model, parameter: Parameter, value: f64) -> Model {
         Parameter::Spring(i) => changed.springs[i].stiffness = value,
         Parameter::Damper(i) => changed.dampers[i].damping = value,
         Parameter::Pendulum(i) => changed.pendulums[i].value = value,
-        Parameter::Beam(..) | Parameter::Drive(..) => unreachable!("a chain has neither"),
+        Parameter::Element(_) => unreachable!("a chain has no element"),
     }
     changed
 }

@@ -146,6 +146,7 @@ fn verify_the_model_file_is_read_as_it_is_written() {
     assert_eq!(again, model);
     // Pressures at the start carry the weight without a roll.
     let forces: Vec<f64> = model
+        .elements
         .cylinders
         .iter()
         .map(|c| c.areas[0] * c.pressures[0] - c.areas[1] * c.pressures[1])

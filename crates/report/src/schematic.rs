@@ -11,7 +11,7 @@ mod parts;
 mod simulator;
 
 use parts::{BOX, COLUMN, FIRST, ROW, boxed, driven, label, lines_below, measured_at};
-use simgap_model::{GROUND, Location, Model, same_pair};
+use simgap_model::{Drawing, GROUND, Glyph, Location, Model, same_pair};
 
 use crate::chart::NEUTRAL_COLOURS;
 use crate::markup::escape;
@@ -37,8 +37,7 @@ struct Node {
 enum Shape {
     Spring,
     Damper,
-    Beam,
-    Cylinder,
+    Element(Glyph),
     Rigid,
 }
 
@@ -98,19 +97,18 @@ pub fn schematic_svg(model: &Model) -> String {
 /// Pairs of nodes that something joins, each once.
 fn joints(model: &Model) -> Vec<[String; 2]> {
     let mut pairs: Vec<[String; 2]> = vec![];
-    let beams = model.beams.iter().map(|beam| beam.between.clone());
-    let cylinders = model.cylinders.iter().map(|c| c.between.clone());
-    let points = model.bodies.iter().flat_map(|body| {
-        let nodes = body.points.iter().map(|point| body.node_name(point));
-        nodes.map(|node| [body.name.clone(), node])
+    let drawings = model.drawings();
+    let drawn = drawings.iter();
+    let symbols = drawn.clone().filter_map(|(_, drawing)| match drawing {
+        Drawing::Member { between, .. } => Some(between),
+        _ => None,
     });
-    for pair in model
-        .members()
-        .into_iter()
-        .chain(beams)
-        .chain(cylinders)
-        .chain(points)
-    {
+    let rigid = drawn.filter_map(|(_, drawing)| match drawing {
+        Drawing::Rigid(pairs) => Some(pairs),
+        _ => None,
+    });
+    let of_elements = symbols.chain(rigid.flatten()).cloned();
+    for pair in model.members().into_iter().chain(of_elements) {
         if !pairs.iter().any(|known| same_pair(known, &pair)) {
             pairs.push(pair);
         }
@@ -133,8 +131,7 @@ fn placed(model: &Model) -> Vec<Node> {
         columns[0].insert(0, GROUND);
     }
     // Coordinates that are no places: rolls, modes of beams, pressures, spools, states of blocks.
-    let is_place =
-        |name: &&str| !(model.is_roll(name) || model.is_beam_mode(name) || model.is_internal(name));
+    let is_place = |name: &&str| !(model.is_roll(name) || model.is_internal(name));
     let masses = model.masses.iter().map(|mass| mass.name.as_str());
     let mut left: Vec<&str> = masses.filter(is_place).collect();
     for name in pairs.iter().flatten() {
@@ -176,24 +173,25 @@ fn find<'a>(nodes: &'a [Node], name: &str) -> Option<&'a Node> {
 }
 
 /// What joins two nodes, with its name; a point and its body have none.
-fn members_between<'a>(model: &'a Model, pair: &[String; 2]) -> Vec<(Shape, &'a str)> {
+fn members_between(model: &Model, pair: &[String; 2]) -> Vec<(Shape, String)> {
     // The static stiffness of a beam is drawn with the beam.
-    let springs = model.springs.iter().filter(|s| !model.is_of_beam(s));
+    let springs = model.springs.iter().filter(|s| !model.is_of_element(s));
     let springs = springs.filter(|s| same_pair(&s.between, pair));
     let dampers = model.dampers.iter().filter(|d| same_pair(&d.between, pair));
-    let beams = model.beams.iter().filter(|b| same_pair(&b.between, pair));
-    let cylinders = model
-        .cylinders
-        .iter()
-        .filter(|c| same_pair(&c.between, pair));
-    let mut found: Vec<(Shape, &str)> = springs
-        .map(|spring| (Shape::Spring, spring.name.as_str()))
-        .chain(dampers.map(|damper| (Shape::Damper, damper.name.as_str())))
-        .chain(beams.map(|beam| (Shape::Beam, beam.name.as_str())))
-        .chain(cylinders.map(|cylinder| (Shape::Cylinder, cylinder.name.as_str())))
+    let drawings = model.drawings().into_iter();
+    let elements = drawings.filter_map(|(name, drawing)| match drawing {
+        Drawing::Member { between, glyph } if same_pair(&between, pair) => {
+            Some((Shape::Element(glyph), name))
+        }
+        _ => None,
+    });
+    let mut found: Vec<(Shape, String)> = springs
+        .map(|spring| (Shape::Spring, spring.name.clone()))
+        .chain(dampers.map(|damper| (Shape::Damper, damper.name.clone())))
+        .chain(elements)
         .collect();
     if found.is_empty() {
-        found.push((Shape::Rigid, ""));
+        found.push((Shape::Rigid, String::new()));
     }
     found
 }
@@ -270,13 +268,13 @@ fn member(shape: Shape, name: &str, from: [f64; 2], to: [f64; 2]) -> String {
             point(0.52, 0.0),
             point(1.0, 0.0)
         ),
-        Shape::Beam => {
+        Shape::Element(Glyph::Beam) => {
             let [a, b, c, d] = [(0.0, -2.0), (1.0, -2.0), (0.0, 2.0), (1.0, 2.0)]
                 .map(|(along, beside)| point(along, beside));
             format!("M{a}L{b}M{c}L{d}")
         }
         // The tube on the side of the first node, the piston and its rod on that of the second.
-        Shape::Cylinder => {
+        Shape::Element(Glyph::Cylinder) => {
             let tube = [
                 (0.25, -HALF),
                 (0.7, -HALF),
@@ -305,8 +303,8 @@ fn member(shape: Shape, name: &str, from: [f64; 2], to: [f64; 2]) -> String {
     }
     let title = format!("<title>{}</title>", escape(name));
     let beyond = match shape {
-        Shape::Beam | Shape::Rigid => middle[1] - 7.0,
-        Shape::Cylinder | Shape::Spring => middle[1] - HALF - 3.0,
+        Shape::Element(Glyph::Beam) | Shape::Rigid => middle[1] - 7.0,
+        Shape::Element(Glyph::Cylinder) | Shape::Spring => middle[1] - HALF - 3.0,
         Shape::Damper => middle[1] + HALF + 13.0,
     };
     format!(

@@ -10,7 +10,8 @@ use divan::counter::ItemsCount;
 use simgap_effects::{Placed, find_of};
 use simgap_model::{Law, LawParameter, Location, Model};
 use simgap_simulate::{Simulator, predict_all};
-use turns::{SAMPLES, jobs, nanoseconds, run};
+use turns::nanoseconds;
+use turns::sets::{SAMPLES, jobs, run};
 
 const MASS: &str = r#"schema = "simgap-model/1"
 name = "mass"

@@ -13,7 +13,8 @@ use divan::counter::ItemsCount;
 use simgap_effects::{Placed, find};
 use simgap_model::{Location, Model};
 use simgap_simulate::{Simulator, predict_all};
-use turns::{SAMPLES, jobs, nanoseconds, run};
+use turns::nanoseconds;
+use turns::sets::{SAMPLES, jobs, run};
 
 const TWO_MASSES: &str = r#"schema = "simgap-model/1"
 name = "two masses"

@@ -210,6 +210,14 @@ impl LaneObserver for Recorder<'_> {
         self.accelerated
     }
 
+    fn reads_displacement(&self, coordinate: usize) -> bool {
+        let mut each = self.plans.iter().zip(&self.coefficients);
+        each.any(|(plan, [stiffness, _])| {
+            let is_member = stiffness.0.iter().any(|value| *value != 0.0);
+            plan.reads_displacement(coordinate, is_member)
+        })
+    }
+
     #[inline(always)]
     fn observe(&mut self, at: &LaneSnapshot<'_>) {
         let slot = at.sample % CHUNK;

@@ -108,6 +108,17 @@ impl OutputPlan {
         Pack::of(|l| a.0[l] - b.0[l])
     }
 
+    /// Whether the displacement of a coordinate is read; a sum reads it where it has a stiffness.
+    pub(crate) fn reads_displacement(&self, coordinate: usize, has_stiffness: bool) -> bool {
+        let reads = match self.read {
+            Read::Displacement => true,
+            Read::Velocity | Read::Acceleration => false,
+            Read::Sum => has_stiffness,
+        };
+        let mut terms = self.a.terms().chain(self.b.terms());
+        reads && terms.any(|(i, _)| i == coordinate)
+    }
+
     pub(crate) fn needs_acceleration(&self) -> bool {
         self.read == Read::Acceleration
     }

@@ -57,7 +57,11 @@ impl Simulator {
             .collect();
         let mut acceleration = vec![0.0; self.model.dof_count()];
         let needs_acceleration = self.outputs.iter().any(OutputPlan::needs_acceleration);
-        self.march(run, ready, |at, base| {
+        let is_read = |coordinate: usize| {
+            let mut plans = self.outputs.iter();
+            plans.any(|plan| plan.reads_displacement(coordinate, plan.stiffness != 0.0))
+        };
+        self.march(run, ready, &is_read, |at, base| {
             if needs_acceleration {
                 ready.propagator.acceleration(at, &mut acceleration);
             }
@@ -195,7 +199,7 @@ impl Simulator {
         let mut path = MemberPath::default();
         let n = self.model.dof_count();
         let (mut acceleration, mut force) = (vec![0.0; n], vec![0.0; n]);
-        self.march(run, &ready, |at, base| {
+        self.march(run, &ready, &|_| true, |at, base| {
             force.copy_from_slice(at.dof_force);
             for (dof, forces) in &ready.drive.beyond {
                 force[*dof] += forces[at.sample];
@@ -230,15 +234,16 @@ impl Simulator {
         &self,
         run: &Run,
         ready: &Prepared,
+        is_read: &dyn Fn(usize) -> bool,
         mut observe: impl FnMut(&Snapshot<'_>, &BaseMotion<'_>),
     ) {
         let drive = &ready.drive;
         let bases = drive.base_count;
-        ready.propagator.march(
+        ready.propagator.march_reading(
             &self.elements,
             &excitation(self, run, ready),
-            &ready.displacement,
-            &ready.velocity,
+            [&ready.displacement, &ready.velocity],
+            is_read,
             &mut |at| {
                 let range = at.sample * bases..(at.sample + 1) * bases;
                 let base = BaseMotion {

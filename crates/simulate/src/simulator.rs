@@ -4,12 +4,12 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use simgap_effects::{Action, Placed, SignalMap, own_laws};
-use simgap_integrate::exact::{Element, ForceLaw, MemberMotion, elementary};
+use simgap_integrate::exact::Element;
 use simgap_model::{Location, Model, Node, same_pair};
 
-use crate::orifice::orifices;
 use crate::outputs::{OutputPlan, output_plans};
 use crate::outside::Outside;
+use crate::ports::ports;
 use crate::{ExternalPlant, PlantError, Run, SimulateError};
 
 /// A model with its effects.
@@ -41,20 +41,6 @@ pub struct MemberPath {
     pub velocity: Vec<f64>,
     /// Acceleration of the two ends' difference, m/s².
     pub acceleration: Vec<f64>,
-}
-
-/// Gravity on an arm beyond its tangent at rest, F = value (sin(angle) − angle): the tangent is in the
-/// matrices, which are propagated exactly.
-struct Gravity {
-    value: f64,
-}
-
-impl ForceLaw for Gravity {
-    simgap_integrate::lanes!(value);
-
-    fn force(&self, motion: MemberMotion) -> f64 {
-        self.value * (elementary::sin(motion.displacement) - motion.displacement)
-    }
 }
 
 impl Simulator {
@@ -147,17 +133,9 @@ impl Simulator {
             let laws = laws.collect::<Result<Vec<_>, SimulateError>>()?;
             outside = Some(Outside::new(plant, nominal, &model, laws.into_iter())?);
         }
-        let mut elements = Vec::new();
-        // Gravity and forces on a mass push from outside: no member carries them.
-        let mut carried = Vec::new();
-        for pendulum in &model.pendulums {
-            let [a, b] = ends(&model, &Location::Mass(pendulum.at.clone()))?;
-            let value = pendulum.value;
-            elements.push(Element::between(a, b, Box::new(Gravity { value })));
-            carried.push(false);
-        }
-        elements.extend(orifices(&model));
-        carried.resize(elements.len(), false);
+        let mut elements = ports(&model);
+        // Ports and forces on a mass push from outside: no member carries them.
+        let mut carried = vec![false; elements.len()];
         for (at, law) in laws {
             let [a, b] = ends(&model, &at)?;
             elements.push(Element::between(a, b, law));

@@ -124,10 +124,10 @@ fn verify_every_kind_of_the_catalogue_in_a_batch() {
     });
     let mut driven = plain.clone();
     let axis = Model::from_toml(include_str!("fixtures/servo_axis.toml")).unwrap();
-    let mut cylinder = axis.cylinders[0].clone();
+    let mut cylinder = axis.elements.cylinders[0].clone();
     cylinder.between = ["top".into(), "ground".into()];
     driven.add_cylinder(cylinder).unwrap();
-    let mut valve = axis.valves[0].clone();
+    let mut valve = axis.elements.valves[0].clone();
     valve.from = None;
     driven.add_valve(valve).unwrap();
     let all = catalogue()

@@ -96,7 +96,7 @@ const DIFFERENCES: f64 = 1e-6;
 #[test]
 fn val_scipy_linearised_poles() {
     let mut model = axis();
-    let valve = &mut model.valves[0];
+    let valve = &mut model.elements.valves[0];
     (valve.overlap, valve.asymmetry, valve.supply_droop) = (0.0, 0.0, 0.0);
     let modes = damped_modes_of(&model.matrices().unwrap(), &model.first_order()).unwrap();
     println!(
@@ -144,7 +144,7 @@ fn prop_volume_and_energy_are_balanced() {
     let [y, p1, p2, _, q1, v, q2] = &found[..] else {
         panic!("seven outputs");
     };
-    let cylinder = &model.cylinders[0];
+    let cylinder = &model.elements.cylinders[0];
     let (areas, volumes, beta) = (cylinder.areas, cylinder.volumes_m3(), cylinder.bulk_modulus);
     let of = |f: &dyn Fn(usize) -> f64| integral(&(0..y.len()).map(f).collect::<Vec<_>>(), step);
     // Oil that came in is compressed, has moved the rod or has leaked.
@@ -181,14 +181,14 @@ fn verify_stiff_oil_makes_a_rigid_actuator() {
         [[output]]\nchannel = \"q\"\nkind = \"flow\"\nat = \"c.p1\"\n";
     let mut model = support::model(shut);
     let modes = damped_modes_of(&model.matrices().unwrap(), &model.first_order()).unwrap();
-    let needed = (model.cylinders[0].oil_stiffness() / 33000.0).sqrt() / TAU;
+    let needed = (model.elements.cylinders[0].oil_stiffness() / 33000.0).sqrt() / TAU;
     let found = modes
         .iter()
         .map(|mode| mode.natural_freq_hz)
         .fold(0.0, f64::max);
     assert!((found / needed - 1.0).abs() < 1e-9, "{found} {needed}");
     // One cylinder of 0.02 m² on 40 mm columns: 1.4 GN/m.
-    assert!((model.cylinders[0].oil_stiffness() - 1.4e9).abs() < 1.0);
+    assert!((model.elements.cylinders[0].oil_stiffness() - 1.4e9).abs() < 1.0);
 
     let valve = "schema = \"simgap-model/1\"\nname = \"v\"\n".to_string()
         + shut
@@ -197,11 +197,11 @@ fn verify_stiff_oil_makes_a_rigid_actuator() {
         natural_freq = 50.0\ndamping_ratio = 0.7\nsupply = 2e7\n\
         [[input]]\nchannel = \"u\"\nkind = \"command\"\nat = \"s\"\n";
     model = Model::from_toml(&valve).unwrap();
-    model.cylinders[0].pressures = [1e7, 1e7];
+    model.elements.cylinders[0].pressures = [1e7, 1e7];
     let command = sampled(1e-3, 2000, |t| 0.1 * (1.0 - (TAU * t).cos()));
     let off = |beta: f64| {
         let mut stiff = model.clone();
-        stiff.cylinders[0].bulk_modulus = beta;
+        stiff.elements.cylinders[0].bulk_modulus = beta;
         let run = run(1e-3, 2000, vec![command.clone()]);
         let found = predict(&stiff, &[], 16, &run, &[]);
         let speed: Vec<f64> = found[1].iter().map(|q| q / 0.02).collect();
@@ -213,7 +213,7 @@ fn verify_stiff_oil_makes_a_rigid_actuator() {
 
 #[test]
 fn verify_oil_is_least_stiff_at_the_middle_of_the_stroke() {
-    let mut cylinder = axis().cylinders.swap_remove(0);
+    let mut cylinder = axis().elements.cylinders.swap_remove(0);
     cylinder.areas = [2e-3; 2];
     let mut at = |position: f64| {
         cylinder.position = Some(position);
@@ -278,12 +278,12 @@ fn verify_sensitivities_of_a_drive_against_finite_differences() {
     let step = 1e-5;
     let mut seen = 0;
     for (k, parameter) in parameters.iter().enumerate() {
-        let Parameter::Drive(i, value) = *parameter else {
+        let Parameter::Element(place) = *parameter else {
             continue;
         };
         seen += 1;
         let at = model.parameter_value(*parameter).unwrap();
-        let moved = |factor: f64| poles(&model.with_drive_value(i, value, factor));
+        let moved = |factor: f64| poles(&model.with_element_value(place, factor));
         let (high, low) = (moved(1.0 + step), moved(1.0 - step));
         for (r, pole) in found.iter().enumerate() {
             let slope = (high[r].eigenvalue - low[r].eigenvalue) / (2.0 * step);

@@ -7,7 +7,7 @@ pub(super) fn cylinder_at<'a>(model: &'a mut Model, at: &Location) -> Option<&'a
     let Location::Between(pair) = at else {
         return None;
     };
-    let mut cylinders = model.cylinders.iter_mut();
+    let mut cylinders = model.elements.cylinders.iter_mut();
     cylinders.find(|cylinder| same_pair(&cylinder.chambers(), pair))
 }
 
@@ -16,5 +16,9 @@ pub(super) fn valve_at<'a>(model: &'a mut Model, at: &Location) -> Option<&'a mu
     let Location::Mass(name) = at else {
         return None;
     };
-    model.valves.iter_mut().find(|valve| &valve.spool() == name)
+    model
+        .elements
+        .valves
+        .iter_mut()
+        .find(|valve| &valve.spool() == name)
 }

@@ -9,10 +9,10 @@ pub(super) trait Kernel {
     /// The step, from `state` to `next` (displacements, then velocities).
     fn step(&mut self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]);
 
-    /// Adds Γ₁ f₁ to `next`.
+    /// Adds Γ₁ f₁ to `next`, the result of the last step.
     fn push_end(&mut self, force: &[f64], next: &mut [f64]);
 
-    /// Adds (Γ₀ + Γ₁) f to `next`: a force held over the step.
+    /// Adds (Γ₀ + Γ₁) f to `next`, the result of the last step: a force held over the step.
     fn push_held(&mut self, force: &[f64], next: &mut [f64]);
 }
 
@@ -102,9 +102,9 @@ fn push<const N: usize>(blocks: &[Block<N>; 2], force: &[f64], next: &mut [f64])
 }
 
 /// Rows that are summed side by side: additions wait for each other within a row.
-const ROWS: usize = 8;
+const ROWS: usize = 4;
 
-/// Entries of a matrix, those of eight rows in a column beside each other.
+/// Entries of a matrix, those of four rows in a column beside each other.
 struct Rows {
     columns: usize,
     entries: Vec<[f64; ROWS]>,
@@ -115,7 +115,7 @@ impl Rows {
     fn new([rows, columns]: [usize; 2], entry: impl Fn(usize, usize) -> f64) -> Rows {
         let blocks = (0..rows).step_by(ROWS);
         let places = blocks.flat_map(|first| (0..columns).map(move |column| (first, column)));
-        let eight = |(first, column): (usize, usize)| {
+        let four = |(first, column): (usize, usize)| {
             std::array::from_fn(|r| match first + r {
                 row if row < rows => entry(row, column),
                 _ => 0.0,
@@ -123,7 +123,7 @@ impl Rows {
         };
         Rows {
             columns,
-            entries: places.map(eight).collect(),
+            entries: places.map(four).collect(),
         }
     }
 
@@ -135,13 +135,13 @@ impl Rows {
         }
         let blocks = self.entries.chunks_exact(self.columns);
         for (block, sums) in blocks.zip(sums.chunks_exact_mut(ROWS)) {
-            let mut eight = array::<ROWS>(sums);
+            let mut of_rows = array::<ROWS>(sums);
             for (entries, value) in block.iter().zip(column) {
                 for r in 0..ROWS {
-                    eight[r] += entries[r] * value;
+                    of_rows[r] += entries[r] * value;
                 }
             }
-            sums.copy_from_slice(&eight);
+            sums.copy_from_slice(&of_rows);
         }
     }
 }
@@ -160,33 +160,35 @@ pub(super) struct Compact {
 
 impl Compact {
     pub(super) fn new(propagator: &ExactPropagator, columns: Columns) -> Compact {
-        let (n, joined) = (propagator.dof_count, &columns.joined);
-        let (rows, wide) = (2 * n, 2 * columns.pushed.len() + columns.moving.len());
-        let forced = [rows, joined.len()];
-        let (gamma0, gamma1) = (&propagator.gamma0, &propagator.gamma1);
+        let rows = columns.rows.len();
+        let wide = 2 * columns.pushed.len() + columns.moving.len();
+        let forced = [rows, columns.joined.len()];
         Compact {
             step: Rows::new([rows, wide], |i, j| columns.step_entry(propagator, i, j)),
-            end: Rows::new(forced, |i, j| gamma1[i * n + joined[j]]),
-            held: Rows::new(forced, |i, j| {
-                let at = i * n + joined[j];
-                gamma0[at] + gamma1[at]
-            }),
+            end: Rows::new(forced, |i, j| columns.end_entry(propagator, i, j)),
+            held: Rows::new(forced, |i, j| columns.held_entry(propagator, i, j)),
             column: Vec::with_capacity(wide),
             sums: vec![0.0; rows.next_multiple_of(ROWS)],
             columns,
         }
     }
 
+    /// Adds what elements do to the sums of the step that has just been taken.
     #[inline(always)]
     fn push(&mut self, is_end: bool, force: &[f64], next: &mut [f64]) {
-        let rows = next.len();
         self.column.clear();
         let joined = self.columns.joined.iter();
         self.column.extend(joined.map(|i| force[*i]));
-        self.sums[..rows].copy_from_slice(next);
         let matrix = if is_end { &self.end } else { &self.held };
         matrix.add_product(&self.column, &mut self.sums);
-        next.copy_from_slice(&self.sums[..rows]);
+        self.deliver(next);
+    }
+
+    #[inline(always)]
+    fn deliver(&self, next: &mut [f64]) {
+        for (row, sum) in self.columns.rows.iter().zip(&self.sums) {
+            next[*row] = *sum;
+        }
     }
 }
 
@@ -202,7 +204,7 @@ impl Kernel for Compact {
         self.column.extend(moving.map(|i| state[*i]));
         self.sums.fill(0.0);
         self.step.add_product(&self.column, &mut self.sums);
-        next.copy_from_slice(&self.sums[..next.len()]);
+        self.deliver(next);
     }
 
     #[inline(always)]
@@ -239,6 +241,7 @@ mod tests {
         let propagator = ExactPropagator::new(&structure, 0.02);
         let propagator = propagator.expect("a regular structure");
         let all = Columns {
+            rows: (0..6).collect(),
             moving: (0..6).collect(),
             pushed: (0..3).collect(),
             joined: (0..3).collect(),

@@ -95,6 +95,25 @@ impl ExactPropagator {
         velocity: &[f64],
         observe: &mut dyn FnMut(&Snapshot<'_>),
     ) {
+        self.march_reading(
+            elements,
+            excitation,
+            [displacement, velocity],
+            &|_| true,
+            observe,
+        );
+    }
+
+    /// As [`ExactPropagator::march`] for an observer that looks at the displacements of these coordinates alone: the integral of
+    /// a pressure, which moves nothing, is not computed where nobody reads it and stays where it was.
+    pub fn march_reading(
+        &self,
+        elements: &[Element],
+        excitation: &Excitation<'_>,
+        [displacement, velocity]: [&[f64]; 2],
+        is_read: &dyn Fn(usize) -> bool,
+        observe: &mut dyn FnMut(&Snapshot<'_>),
+    ) {
         let mut state: Vec<f64> = displacement.iter().chain(velocity).copied().collect();
         state.resize(2 * self.dof_count, 0.0);
         let mut plant = Plant::new(self, elements);
@@ -104,7 +123,7 @@ impl ExactPropagator {
             3 => plant.run(&mut Fixed::<3>::new(self), excitation, &mut state, observe),
             4 => plant.run(&mut Fixed::<4>::new(self), excitation, &mut state, observe),
             _ => {
-                let columns = Columns::new(&[self], elements, &[excitation.dof_force]);
+                let columns = Columns::new(&[self], elements, &[excitation.dof_force], is_read);
                 let mut kernel = Compact::new(self, columns);
                 plant.run(&mut kernel, excitation, &mut state, observe);
             }
@@ -123,6 +142,7 @@ impl Plant<'_> {
         let (n, m) = (self.propagator.dof_count, self.elements.len());
         let bases = excitation.base_count;
         let mut scratch = Scratch::new(n, bases);
+        scratch.next.copy_from_slice(state);
         let mut carried = vec![0.0; m];
         let mut last: Option<Sample<'_>> = None;
         for index in 0..excitation.sample_count {

@@ -7,7 +7,7 @@
 //! r = φ(d, v) − S,    A = 1 + φ_v Cᵥ,    A Δ = r,    S ← S + Δ                                        (5)
 //! ```
 //!
-//! from a straight line through the last two steps. It ends where Δ is within the square root of the accuracy: what Newton's
+//! from a parabola through the last three steps, after which one step of Newton's method is mostly enough. It ends where Δ is within the square root of the accuracy: what Newton's
 //! method leaves then is its square. A has a diagonal of at least one where a force resists the velocity and needs no
 //! pivots.
 
@@ -29,12 +29,15 @@ impl Plant<'_> {
         }
     }
 
-    /// Takes the forces of the members to where the last two steps lead.
+    /// Takes the forces of the members to where the last three steps lead.
     pub(super) fn extrapolate(&mut self) {
         for (&i, before) in self.together.members.iter().zip(&mut self.together.before) {
             let now = self.smooth[i];
-            self.smooth[i] = now + (now - *before);
-            *before = now;
+            let [last, one_before] = *before;
+            // S₂ + (S₂ − S₁) + ((S₂ − S₁) − (S₁ − S₀))
+            let change = now - last;
+            self.smooth[i] = now + (change + (change - (last - one_before)));
+            *before = [now, last];
         }
     }
 

@@ -13,11 +13,11 @@ impl Model {
             InputKind::Displacement => node_name(&place, &input.at),
             InputKind::Signal => node_name(&place, &input.at),
             InputKind::Command => {
-                let names = self.valves.iter().map(|valve| &valve.name);
+                let names = self.elements.valves.iter().map(|valve| &valve.name);
                 is_one_of(&place, &input.at, names, "the name of a [[valve]]")
             }
             InputKind::SetPoint => {
-                let names = self.blocks.iter().map(|block| &block.name);
+                let names = self.elements.blocks.iter().map(|block| &block.name);
                 is_one_of(&place, &input.at, names, "the name of a [[block]]")
             }
         }
@@ -37,7 +37,11 @@ impl Model {
             InputKind::Force => at(self.node(&own.at)),
             InputKind::Displacement | InputKind::Signal => vec![],
             InputKind::Command => {
-                let valve = self.valves.iter().find(|valve| valve.name == own.at);
+                let valve = self
+                    .elements
+                    .valves
+                    .iter()
+                    .find(|valve| valve.name == own.at);
                 at(valve.and_then(|valve| self.node(&valve.spool())))
             }
             InputKind::SetPoint => self.set_point_terms(input)?,

@@ -30,7 +30,8 @@ impl Model {
                 ([body.roll(), ground()], Form::Displacement)
             }
             OutputKind::Spool => {
-                let valve = at.and_then(|at| self.valves.iter().find(|valve| valve.name == at));
+                let valve =
+                    at.and_then(|at| self.elements.valves.iter().find(|valve| valve.name == at));
                 let needed = "the name of a [[valve]]";
                 let valve = valve.ok_or_else(|| unfit(output, "the spool of", needed))?;
                 ([valve.spool(), ground()], Form::Displacement)
@@ -43,7 +44,7 @@ impl Model {
             OutputKind::Flow => {
                 let (cylinder, chamber) = self.chamber_of(output)?;
                 let of_chamber = at.and_then(|at| self.node(at)).unwrap_or(Node::Ground);
-                let mut valves = self.valves.iter();
+                let mut valves = self.elements.valves.iter();
                 let valve = valves.find(|valve| valve.cylinder == cylinder.name);
                 let gain = valve.map_or(0.0, |valve| {
                     valve.opening_gain(chamber, cylinder.pressures[chamber])

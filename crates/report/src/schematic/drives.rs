@@ -1,101 +1,113 @@
-//! The signals of a drive: blocks, then valves, in rows of boxes below the machine.
+//! The signals of a drive: boxes below the machine (blocks, valves).
 //!
-//! Column d holds the blocks that are d blocks away from what comes from outside, the last column the valves. An arrow leads from
-//! a block to a block or a valve; what else goes into a block and comes out of it is written below.
+//! Column d holds the boxes that are d boxes away from what comes from outside, the last column those next to the machine. An
+//! arrow leads from a box to a box; what else goes into one and comes out of it is written below.
 
-use simgap_model::{Block, Model, Valve};
+use simgap_model::{Drawing, Model};
 
 use super::parts::{BOX, COLUMN, FIRST, ROW, arrow, boxed, driven, lines_below, measured_at};
 
-/// Size of a block or a valve, pixels: their names are longer than those of masses.
+/// Size of a box, pixels: their names are longer than those of masses.
 const PART: [f64; 2] = [120.0, BOX[1]];
 
-/// A block or a valve and where it is drawn.
-struct Part<'a> {
-    name: &'a str,
-    at: [f64; 2],
+/// An element that is drawn as a box.
+struct Part {
+    name: String,
+    /// What goes in, with its sign.
+    signals: Vec<(&'static str, String)>,
+    lines: Vec<String>,
+    measured: Vec<String>,
+    is_last: bool,
 }
 
-/// The picture of blocks and valves below a height, and its lower right corner; `None` where a model has neither.
+/// The boxes of a model.
+fn parts(model: &Model) -> Vec<Part> {
+    let drawings = model.drawings().into_iter();
+    let boxes = drawings.filter_map(|(name, drawing)| match drawing {
+        Drawing::Box {
+            signals,
+            lines,
+            measured,
+            is_last,
+        } => Some(Part {
+            name,
+            signals,
+            lines,
+            measured,
+            is_last,
+        }),
+        _ => None,
+    });
+    boxes.collect()
+}
+
+/// The picture of the boxes below a height, and its lower right corner; `None` where a model has none.
 pub(super) fn drawn(model: &Model, top: f64) -> Option<(String, [f64; 2])> {
-    let columns = columns(model);
+    let parts = parts(model);
+    let columns = columns(&parts);
     let most = columns
         .iter()
         .map(Vec::len)
         .max()
         .filter(|most| *most > 0)?;
-    let mut parts = vec![];
-    for (column, names) in columns.iter().enumerate() {
-        for (row, &name) in names.iter().enumerate() {
+    let mut placed: Vec<(&Part, [f64; 2])> = vec![];
+    for (column, parts) in columns.iter().enumerate() {
+        for (row, &part) in parts.iter().enumerate() {
             let x = FIRST[0] + column as f64 * COLUMN;
             let y = top + BOX[1] + row as f64 * ROW;
-            parts.push(Part { name, at: [x, y] });
+            placed.push((part, [x, y]));
         }
     }
     let mut text = String::new();
-    for (from, to) in arrows(model) {
-        let find = |name: &str| parts.iter().find(|part| part.name == name);
-        if let (Some(from), Some(to)) = (find(from), find(to)) {
-            text.push_str(&between(from.at, to.at));
+    for (from, to) in arrows(&parts) {
+        let find = |name: &str| placed.iter().find(|(part, _)| part.name == name);
+        if let (Some((_, from)), Some((_, to))) = (find(from), find(to)) {
+            text.push_str(&between(*from, *to));
         }
     }
-    for part in &parts {
-        text.push_str(&boxed(part.name, part.at, PART, false));
-        text.push_str(&driven(model, part.name, part.at, PART));
-        text.push_str(&lines_below(part.at, &told(model, part.name)));
+    for (part, at) in &placed {
+        text.push_str(&boxed(&part.name, *at, PART, false));
+        text.push_str(&driven(model, &part.name, *at, PART));
+        text.push_str(&lines_below(*at, &told(model, &parts, part)));
     }
     let right = FIRST[0] + (columns.len() - 1) as f64 * COLUMN + 130.0;
     Some((text, [right, top + BOX[1] + most as f64 * ROW - 20.0]))
 }
 
-/// Blocks column by column, then the valves; no column is empty but where a model has no block.
-fn columns(model: &Model) -> Vec<Vec<&str>> {
-    let mut rank = vec![0; model.blocks.len()];
-    let place = |name: &String| model.blocks.iter().position(|block| block.name == *name);
-    // As many rounds as there are blocks: a loop goes on no longer.
-    for _ in 0..model.blocks.len() {
-        for (i, block) in model.blocks.iter().enumerate() {
-            let sources = block.plus.iter().chain(&block.minus).filter_map(place);
+/// Boxes column by column, those next to the machine last; no column is empty.
+fn columns(parts: &[Part]) -> Vec<Vec<&Part>> {
+    let (last, inner): (Vec<&Part>, Vec<&Part>) = parts.iter().partition(|part| part.is_last);
+    let mut rank = vec![0; inner.len()];
+    let place = |name: &String| inner.iter().position(|part| part.name == *name);
+    // As many rounds as there are boxes: a loop goes on no longer.
+    for _ in 0..inner.len() {
+        for (i, part) in inner.iter().enumerate() {
+            let sources = part.signals.iter().filter_map(|(_, name)| place(name));
             let next = sources.filter(|j| *j != i).map(|j| rank[j] + 1).max();
-            rank[i] = next.unwrap_or(0).min(model.blocks.len() - 1);
+            rank[i] = next.unwrap_or(0).min(inner.len() - 1);
         }
     }
-    let last = rank.iter().max().map_or(0, |last| last + 1);
+    let ranks = rank.iter().max().map_or(0, |most| most + 1);
     let of_rank = |wanted: usize| {
-        let blocks = model.blocks.iter().zip(&rank);
-        let own = blocks.filter(move |(_, rank)| **rank == wanted);
-        own.map(|(block, _)| block.name.as_str()).collect()
+        let ranked = inner.iter().zip(&rank);
+        let own = ranked.filter(move |(_, rank)| **rank == wanted);
+        own.map(|(part, _)| *part).collect()
     };
-    let mut columns: Vec<Vec<&str>> = (0..last).map(of_rank).collect();
-    columns.retain(|names| !names.is_empty());
-    if !model.valves.is_empty() {
-        columns.push(
-            model
-                .valves
-                .iter()
-                .map(|valve| valve.name.as_str())
-                .collect(),
-        );
-    }
+    let mut columns: Vec<Vec<&Part>> = (0..ranks).map(of_rank).collect();
+    columns.push(last);
+    columns.retain(|parts| !parts.is_empty());
     columns
 }
 
-/// What goes into a block, with its name.
-fn sources(block: &Block) -> impl Iterator<Item = (&str, &str)> {
-    let sources = block.plus.iter().chain(&block.minus);
-    sources.map(|source| (source.as_str(), block.name.as_str()))
-}
-
-/// From which block to which block or valve a signal goes.
-fn arrows(model: &Model) -> Vec<(&str, &str)> {
-    let orders = model.valves.iter();
-    let orders = orders.filter_map(|valve| Some((valve.from.as_deref()?, valve.name.as_str())));
-    model
-        .blocks
-        .iter()
-        .flat_map(sources)
-        .chain(orders)
-        .collect()
+/// From which box to which box a signal goes; what comes from elsewhere leads from no box.
+fn arrows(parts: &[Part]) -> Vec<(&str, &str)> {
+    let (last, inner): (Vec<&Part>, Vec<&Part>) = parts.iter().partition(|part| part.is_last);
+    let all = inner.into_iter().chain(last);
+    all.flat_map(|part| {
+        let signals = part.signals.iter();
+        signals.map(|(_, source)| (source.as_str(), part.name.as_str()))
+    })
+    .collect()
 }
 
 fn between(from: [f64; 2], to: [f64; 2]) -> String {
@@ -105,34 +117,16 @@ fn between(from: [f64; 2], to: [f64; 2]) -> String {
     )
 }
 
-/// What is written below a block or a valve.
-fn told(model: &Model, name: &str) -> Vec<String> {
-    if let Some(block) = model.blocks.iter().find(|block| block.name == name) {
-        return told_of_block(model, block);
-    }
-    let valve = model.valves.iter().find(|valve| valve.name == name);
-    valve.map_or(vec![], |valve| told_of_valve(model, valve))
-}
-
-fn told_of_block(model: &Model, block: &Block) -> Vec<String> {
-    let is_block = |name: &String| model.blocks.iter().any(|other| other.name == *name);
-    let outside = |names: &[String], sign: &str| -> Vec<String> {
-        let names = names.iter().filter(|name| !is_block(name));
-        names.map(|name| format!("{sign} {name}")).collect()
-    };
-    let mut lines = outside(&block.plus, "+");
-    lines.extend(outside(&block.minus, "\u{2212}"));
-    lines.extend(block.force.iter().map(|node| format!("force on {node}")));
-    lines
-}
-
-fn told_of_valve(model: &Model, valve: &Valve) -> Vec<String> {
-    let mut lines = vec![format!("feeds {}", valve.cylinder)];
-    lines.extend(measured_at(model, &valve.name));
-    let cylinder = model.cylinders.iter().find(|c| c.name == valve.cylinder);
-    for chamber in cylinder.into_iter().flat_map(|c| c.chambers()) {
-        lines.extend(measured_at(model, &chamber));
-    }
+/// What is written below a box.
+fn told(model: &Model, parts: &[Part], part: &Part) -> Vec<String> {
+    let is_box = |name: &String| parts.iter().any(|other| other.name == *name);
+    let outside = part.signals.iter().filter(|(_, name)| !is_box(name));
+    let mut lines: Vec<String> = outside
+        .map(|(sign, name)| format!("{sign} {name}"))
+        .collect();
+    lines.extend(part.lines.iter().cloned());
+    let measured = part.measured.iter();
+    lines.extend(measured.flat_map(|name| measured_at(model, name)));
     lines
 }
 
@@ -172,9 +166,12 @@ mod tests {
             vec!["controller left", "controller right"],
             vec!["servo left", "servo right"],
         ];
-        assert_eq!(columns(&model), wanted);
+        let boxes = parts(&model);
+        let names = |parts: Vec<&Part>| parts.into_iter().map(|p| p.name.clone()).collect();
+        let found: Vec<Vec<String>> = columns(&boxes).into_iter().map(names).collect();
+        assert_eq!(found, wanted);
         let parts = wanted.concat();
-        let arrows = arrows(&model).into_iter();
+        let arrows = arrows(&boxes).into_iter();
         // What is measured of the machine comes without an arrow.
         let between: Vec<_> = arrows.filter(|(from, _)| parts.contains(from)).collect();
         assert_eq!(between.len(), 4);
@@ -193,8 +190,9 @@ mod tests {
     #[test]
     fn verify_a_loop_of_blocks_ends() {
         let mut model = mold();
-        model.blocks[0].plus = vec!["controller left".into()];
-        let names = columns(&model).concat();
+        model.elements.blocks[0].plus = vec!["controller left".into()];
+        let boxes = parts(&model);
+        let names = columns(&boxes).concat();
         assert_eq!(names.len(), 5);
     }
 

@@ -1,12 +1,14 @@
 //! Two linear masses, and one mass with dry friction and a cubic spring, as the march itself takes them.
 
+use std::cell::RefCell;
+
 use faer::mat;
 use simgap_effects::{Action, find};
 use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSet, LaneSnapshot};
 use simgap_integrate::exact::{Element, ExactPropagator, Excitation};
 use simgap_model::{Node, StructuralMatrices};
 
-use crate::turns::SAMPLES;
+use crate::sets::SAMPLES;
 
 const STEP_S: f64 = 1e-3;
 
@@ -64,7 +66,9 @@ fn called(sets: Vec<Set>, n: usize) -> Call {
     let force: Vec<f64> = (0..SAMPLES * n)
         .map(|k| if k % n == 0 { wave(k / n) } else { 0.0 })
         .collect();
+    let room = RefCell::new((vec![0.0; SAMPLES], vec![[0.0; LANES]; SAMPLES]));
     Box::new(move || {
+        let (alone, in_lanes) = &mut *room.borrow_mut();
         let excitation = Excitation {
             dof_force: &force,
             base_displacement: &[],
@@ -77,11 +81,10 @@ fn called(sets: Vec<Set>, n: usize) -> Call {
         let still = [0.0; 2];
         let still = &still[..n];
         if let [(propagator, elements)] = &sets[..] {
-            let mut output = Vec::with_capacity(SAMPLES);
             propagator.march(elements, &excitation, still, still, &mut |at| {
-                output.push(at.displacement[n - 1]);
+                alone[at.sample] = at.displacement[n - 1];
             });
-            return output.last().copied().into_iter().collect();
+            return alone.last().copied().into_iter().collect();
         }
         let lanes = sets.iter().map(|(propagator, elements)| LaneSet {
             propagator,
@@ -90,17 +93,17 @@ fn called(sets: Vec<Set>, n: usize) -> Call {
             displacement: still,
             velocity: still,
         });
-        let mut written = Written(Vec::with_capacity(SAMPLES));
-        Batch::new(lanes.collect()).unwrap().march(&mut written);
-        let last = written.0.last().copied().unwrap_or_default();
-        last.into_iter().collect()
+        Batch::new(lanes.collect())
+            .unwrap()
+            .march(&mut Written(in_lanes));
+        in_lanes.last().copied().into_iter().flatten().collect()
     })
 }
 
 /// The last displacement of eight sets at every sample.
-struct Written(Vec<[f64; LANES]>);
+struct Written<'a>(&'a mut [[f64; LANES]]);
 
-impl LaneObserver for Written {
+impl LaneObserver for Written<'_> {
     fn needs_acceleration(&self) -> bool {
         false
     }
@@ -108,6 +111,6 @@ impl LaneObserver for Written {
     #[inline(always)]
     fn observe(&mut self, at: &LaneSnapshot<'_>) {
         let last = at.displacement.len() - 1;
-        self.0.push(at.displacement[last].0);
+        self.0[at.sample] = at.displacement[last].0;
     }
 }

@@ -13,13 +13,13 @@
 mod axis;
 mod lumped;
 mod other;
-#[path = "../turns/mod.rs"]
-mod turns;
+#[path = "../turns/sets.rs"]
+mod sets;
 
 use std::time::Instant;
 
 use other::Other;
-use turns::SAMPLES;
+use sets::SAMPLES;
 
 /// Rounds in which every row is measured once.
 const ROUNDS: usize = 15;
@@ -50,12 +50,12 @@ fn rows() -> Vec<Row> {
 }
 
 fn ours_of_axis(sets: usize) -> Box<dyn Fn() -> Vec<f64>> {
-    let run = turns::run(axis::AMPLITUDE);
-    let sets: Vec<_> = (0..sets)
+    let run = sets::run(axis::AMPLITUDE);
+    let plants: Vec<_> = (0..sets)
         .map(|k| axis::set(k as f64 / sets as f64))
         .collect();
     Box::new(move || {
-        let found = simgap_simulate::predict_all(&turns::jobs(&sets, &run));
+        let found = simgap_simulate::predict_all(&sets::jobs(&plants, &run));
         let last = |outputs: &Vec<Vec<f64>>| outputs[0].last().copied();
         found.iter().flatten().filter_map(last).collect()
     })

@@ -37,6 +37,13 @@ pub trait LaneObserver {
     /// Whether it looks at accelerations.
     fn needs_acceleration(&self) -> bool;
 
+    /// Whether it looks at the displacement of a coordinate. The integral of a pressure, which moves nothing, is not computed
+    /// where nobody reads it and stays where it was.
+    fn reads_displacement(&self, coordinate: usize) -> bool {
+        let _ = coordinate;
+        true
+    }
+
     /// Eight sets at one sample. Mark it `#[inline(always)]` to have it in vector instructions.
     fn observe(&mut self, at: &LaneSnapshot<'_>);
 }
@@ -60,7 +67,9 @@ impl<'a> Batch<'a> {
     pub fn march(&self, observer: &mut impl LaneObserver) {
         let arch = Arch::new();
         for (i, sets) in self.sets.chunks(LANES).enumerate() {
-            let lanes = Lanes::new(arch, sets, i * LANES, self.sample_count);
+            let is_read = |coordinate: usize| observer.reads_displacement(coordinate);
+            let block = [i * LANES, self.sample_count];
+            let lanes = Lanes::new(arch, sets, block, &is_read);
             match sets[0].propagator.dof_count {
                 1 => arch.dispatch(March(lanes, [Pack::ZERO; 1], &mut *observer)),
                 2 => arch.dispatch(March(lanes, [Pack::ZERO; 2], &mut *observer)),
@@ -83,10 +92,15 @@ struct Lanes<'a> {
 }
 
 impl<'a> Lanes<'a> {
-    fn new(arch: Arch, sets: &[LaneSet<'a>], first_set: usize, sample_count: usize) -> Lanes<'a> {
+    fn new(
+        arch: Arch,
+        sets: &[LaneSet<'a>],
+        [first_set, sample_count]: [usize; 2],
+        is_read: &dyn Fn(usize) -> bool,
+    ) -> Lanes<'a> {
         let lanes: [&LaneSet<'a>; LANES] = std::array::from_fn(|l| sets.get(l).unwrap_or(&sets[0]));
         Lanes {
-            block: Block::new(arch, &lanes),
+            block: Block::new(arch, &lanes, is_read),
             first_set,
             set_count: sets.len(),
             sample_count,
@@ -246,8 +260,6 @@ impl<R: Row> Seen<R> {
         (force, base): (&R, &[Pack]),
         observer: &mut impl LaneObserver,
     ) {
-        // What an observer indexes as it likes is kept in memory; the state need not be.
-        self.state.copy_from(state);
         lanes.block.carried(simd, &mut self.carried);
         for (i, carried) in self.carried.iter_mut().enumerate() {
             if lanes.block.spread[i] {
@@ -267,8 +279,8 @@ impl<R: Row> Seen<R> {
             first_set: lanes.first_set,
             set_count: lanes.set_count,
             sample,
-            displacement: self.state.displacement.packs(),
-            velocity: self.state.velocity.packs(),
+            displacement: state.displacement.shown(&mut self.state.displacement),
+            velocity: state.velocity.shown(&mut self.state.velocity),
             acceleration: if needs_acceleration {
                 acceleration
             } else {

@@ -114,7 +114,11 @@ pub(super) fn less_products<S: Simd>(
 
 impl<'a> Block<'a> {
     /// The sets at their first sample.
-    pub(super) fn new(arch: Arch, sets: &[&LaneSet<'a>; LANES]) -> Block<'a> {
+    pub(super) fn new(
+        arch: Arch,
+        sets: &[&LaneSet<'a>; LANES],
+        is_read: &dyn Fn(usize) -> bool,
+    ) -> Block<'a> {
         let m = sets[0].elements.len();
         let plants = sets.map(LaneSet::begin);
         let of_plants = |value: &dyn Fn(&Plant<'_>) -> f64| Pack::of(|l| value(&plants[l]));
@@ -149,7 +153,8 @@ impl<'a> Block<'a> {
             open: Mask::ALL,
         };
         let members = &plants[0].together.members;
-        let before = (0..members.len()).map(|a| of_plants(&|p| p.together.before[a]));
+        let before =
+            (0..members.len()).map(|a| [0, 1].map(|k| of_plants(&|p| p.together.before[a][k])));
         let together = Together::new(members, before.collect());
         let law = |i: usize| -> Box<dyn LaneLaw + 'a> {
             let peers: [&'a dyn ForceLaw; LANES] = sets.map(|set| set.elements[i].law.as_ref());
@@ -159,7 +164,7 @@ impl<'a> Block<'a> {
         };
         Block {
             arch,
-            kernel: LaneKernel::new(arch, sets),
+            kernel: LaneKernel::new(arch, sets, is_read),
             ports: sets[0].elements.iter().map(|e| e.port).collect(),
             laws: (0..m).map(law).collect(),
             elements: (0..m).map(element).collect(),
@@ -202,7 +207,7 @@ impl<'a> Block<'a> {
             self.solve(simd, next, base, steps as f64);
             self.push(simd, before, next);
         }
-        state.copy_from(next);
+        state.take_over(next);
     }
 
     /// Forces of the elements at the end of the step.

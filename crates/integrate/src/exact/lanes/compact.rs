@@ -133,18 +133,21 @@ pub(super) struct Compact {
 }
 
 impl Compact {
-    pub(super) fn new(arch: Arch, sets: &[&LaneSet<'_>; LANES]) -> Compact {
+    pub(super) fn new(
+        arch: Arch,
+        sets: &[&LaneSet<'_>; LANES],
+        is_read: &dyn Fn(usize) -> bool,
+    ) -> Compact {
         let propagators = sets.map(|set| set.propagator);
-        let n = propagators[0].dof_count;
         let forces = sets.map(|set| set.excitation.dof_force);
-        let columns = Columns::new(&propagators, sets[0].elements, &forces);
+        let columns = Columns::new(&propagators, sets[0].elements, &forces, is_read);
+        let rows = columns.rows.len();
         let wide = 2 * columns.pushed.len() + columns.moving.len();
-        let step = Rows::new(&propagators, [2 * n, wide], |p, i, j| {
+        let step = Rows::new(&propagators, [rows, wide], |p, i, j| {
             columns.step_entry(p, i, j)
         });
-        let joined = &columns.joined;
-        let end = Rows::new(&propagators, [2 * n, joined.len()], |p, i, j| {
-            p.gamma1[i * n + joined[j]]
+        let end = Rows::new(&propagators, [rows, columns.joined.len()], |p, i, j| {
+            columns.end_entry(p, i, j)
         });
         Compact {
             arch,
@@ -152,7 +155,7 @@ impl Compact {
             end,
             columns,
             column: Vec::with_capacity(wide),
-            sums: vec![Pack::ZERO; (2 * n).next_multiple_of(ROWS)],
+            sums: vec![Pack::ZERO; rows.next_multiple_of(ROWS)],
         }
     }
 
@@ -178,24 +181,25 @@ impl Compact {
         self.deliver(next);
     }
 
-    /// Adds Γ₁ f to `next`, f being zero where no element pushes.
+    /// Adds Γ₁ f to `next`, the result of the last step, f being zero where no element pushes.
     pub(super) fn push_end<R: Row>(&mut self, force: &[Pack], next: &mut State<R>) {
-        let (x, v) = (next.displacement.packs(), next.velocity.packs());
-        let n = x.len();
         self.column.clear();
-        self.column
-            .extend(self.columns.joined.iter().map(|i| force[*i]));
-        self.sums[..n].copy_from_slice(x);
-        self.sums[n..2 * n].copy_from_slice(v);
+        let joined = self.columns.joined.iter();
+        self.column.extend(joined.map(|i| force[*i]));
         self.end
             .add_product(self.arch, &self.column, &mut self.sums);
         self.deliver(next);
     }
 
     fn deliver<R: Row>(&self, next: &mut State<R>) {
-        let n = next.velocity.packs().len();
-        let (x, v) = self.sums[..2 * n].split_at(n);
-        next.displacement.packs_mut().copy_from_slice(x);
-        next.velocity.packs_mut().copy_from_slice(v);
+        let (x, v) = (next.displacement.packs_mut(), next.velocity.packs_mut());
+        let n = x.len();
+        for (&row, sum) in self.columns.rows.iter().zip(&self.sums) {
+            if row < n {
+                x[row] = *sum;
+            } else {
+                v[row - n] = *sum;
+            }
+        }
     }
 }

@@ -32,7 +32,11 @@ fn add_products<S: Simd>(simd: S, mut sum: Wide<S>, matrix: &[Pack], column: &[P
 }
 
 impl LaneKernel {
-    pub(super) fn new(arch: Arch, sets: &[&LaneSet<'_>; LANES]) -> LaneKernel {
+    pub(super) fn new(
+        arch: Arch,
+        sets: &[&LaneSet<'_>; LANES],
+        is_read: &dyn Fn(usize) -> bool,
+    ) -> LaneKernel {
         let propagators = sets.map(|set| set.propagator);
         let is_long = propagators[0].dof_count > COMPARED;
         let pack = |matrix: &dyn Fn(&ExactPropagator) -> Vec<f64>| -> Vec<Pack> {
@@ -42,7 +46,7 @@ impl LaneKernel {
                 .collect()
         };
         LaneKernel {
-            compact: is_long.then(|| Compact::new(arch, sets)),
+            compact: is_long.then(|| Compact::new(arch, sets, is_read)),
             phi: pack(&|p| p.phi.clone()),
             gamma0: pack(&|p| p.gamma0.clone()),
             gamma1: pack(&|p| p.gamma1.clone()),

@@ -15,12 +15,12 @@ struct Gathered<F, const K: usize> {
     join: F,
 }
 
-/// Puts the laws of eight sets side by side, if all are of the type of the first: `split` and
-/// `join` take a law into its numbers and back. A law calls it through [`crate::lanes!`].
-pub fn gather<L: ForceLaw, const K: usize>(
+/// Puts the laws of eight sets side by side, if all are of the type of the first: `split` takes a law into its numbers and
+/// `join` makes a law of them, the same or one of the same values. A law calls it through [`crate::lanes!`].
+pub fn gather<L: ForceLaw, J: ForceLaw, const K: usize>(
     peers: &[&dyn ForceLaw],
     split: impl Fn(&L) -> [f64; K],
-    join: impl Fn([f64; K]) -> L + Send + Sync + 'static,
+    join: impl Fn([f64; K]) -> J + Send + Sync + 'static,
 ) -> Option<Box<dyn LaneLaw>> {
     let mut columns = [Pack::ZERO; K];
     for lane in 0..LANES {

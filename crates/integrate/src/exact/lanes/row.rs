@@ -8,6 +8,12 @@ pub(super) trait Row: Clone {
     fn packs(&self) -> &[Pack];
 
     fn packs_mut(&mut self) -> &mut [Pack];
+
+    /// Takes the place of `other`, which is room afterwards.
+    fn take_over(&mut self, other: &mut Self);
+
+    /// The row for an observer, who indexes it as he likes: in memory, for which there is room.
+    fn shown<'a>(&'a self, room: &'a mut Self) -> &'a [Pack];
 }
 
 impl<const N: usize> Row for [Pack; N] {
@@ -19,6 +25,17 @@ impl<const N: usize> Row for [Pack; N] {
     #[inline(always)]
     fn packs_mut(&mut self) -> &mut [Pack] {
         self
+    }
+
+    #[inline(always)]
+    fn take_over(&mut self, other: &mut Self) {
+        *self = *other;
+    }
+
+    #[inline(always)]
+    fn shown<'a>(&'a self, room: &'a mut Self) -> &'a [Pack] {
+        *room = *self;
+        room
     }
 }
 
@@ -32,6 +49,16 @@ impl Row for Vec<Pack> {
     fn packs_mut(&mut self) -> &mut [Pack] {
         self
     }
+
+    #[inline(always)]
+    fn take_over(&mut self, other: &mut Self) {
+        std::mem::swap(self, other);
+    }
+
+    #[inline(always)]
+    fn shown<'a>(&'a self, _: &'a mut Self) -> &'a [Pack] {
+        self
+    }
 }
 
 /// Where eight plants are: x and ẋ.
@@ -42,11 +69,11 @@ pub(super) struct State<R> {
 }
 
 impl<R: Row> State<R> {
-    /// Takes over `other` without new room.
+    /// Takes the place of `other`, which is room afterwards.
     #[inline(always)]
-    pub(super) fn copy_from(&mut self, other: &State<R>) {
-        copy(&mut self.displacement, &other.displacement);
-        copy(&mut self.velocity, &other.velocity);
+    pub(super) fn take_over(&mut self, other: &mut State<R>) {
+        self.displacement.take_over(&mut other.displacement);
+        self.velocity.take_over(&mut other.velocity);
     }
 }
 

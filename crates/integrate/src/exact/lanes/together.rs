@@ -27,14 +27,17 @@ impl Block<'_> {
         arch.dispatch(Solve(self, open))
     }
 
-    /// Takes the forces of the members to where the last two steps lead.
+    /// Takes the forces of the members to where the last three steps lead.
     #[inline(always)]
     pub(super) fn extrapolate<S: Simd>(&mut self, simd: S) {
         let members = self.together.members.iter();
         for (&i, before) in members.zip(&mut self.together.before) {
             let now = Wide::of(simd, &self.elements[i].smooth);
-            self.elements[i].smooth = (now + (now - Wide::of(simd, before))).pack();
-            *before = now.pack();
+            let last = Wide::of(simd, &before[0]);
+            let change = now - last;
+            let bend = change - (last - Wide::of(simd, &before[1]));
+            self.elements[i].smooth = (now + (change + bend)).pack();
+            *before = [now.pack(), last.pack()];
         }
     }
 

@@ -1,5 +1,7 @@
 //! The orifices of valves as ports of the plant.
 
+use std::any::Any;
+
 use simgap_integrate::exact::{Element, ForceLaw, LaneLaw, MemberMotion, Port, Tangent, gather};
 use simgap_model::{Cylinder, Edges, Model, Node, PRESSURE_UNIT_PA, Valve};
 
@@ -36,7 +38,7 @@ impl Orifice {
 
     /// An orifice of the numbers of [`Orifice::split`].
     #[inline(always)]
-    fn join(numbers: [f64; 9]) -> Orifice {
+    fn join(numbers: [f64; 9]) -> Self {
         let [
             flow_gain,
             overlap,
@@ -48,7 +50,7 @@ impl Orifice {
             pressure,
             gain,
         ] = numbers;
-        Orifice {
+        Self {
             edges: Edges {
                 flow_gain,
                 overlap,
@@ -64,8 +66,21 @@ impl Orifice {
     }
 }
 
-impl ForceLaw for Orifice {
+impl Orifice {
     #[inline(always)]
+    fn tangent_from<const DROOPS: bool>(&self, motion: MemberMotion) -> Tangent {
+        let pressure = self.pressure + PRESSURE_UNIT_PA * motion.velocity;
+        let [flow, slope] = self
+            .edges
+            .flow_from::<DROOPS>(motion.displacement, pressure);
+        Tangent {
+            force: -PRESSURE_UNIT_PA * (flow - self.gain * motion.displacement),
+            damping: -PRESSURE_UNIT_PA * PRESSURE_UNIT_PA * slope,
+        }
+    }
+}
+
+impl ForceLaw for Orifice {
     fn force(&self, motion: MemberMotion) -> f64 {
         self.tangent(motion).force
     }
@@ -74,25 +89,51 @@ impl ForceLaw for Orifice {
         true
     }
 
-    #[inline(always)]
     fn tangent(&self, motion: MemberMotion) -> Tangent {
-        let pressure = self.pressure + PRESSURE_UNIT_PA * motion.velocity;
-        let [flow, slope] = self.edges.flow(motion.displacement, pressure);
-        Tangent {
-            force: -PRESSURE_UNIT_PA * (flow - self.gain * motion.displacement),
-            damping: -PRESSURE_UNIT_PA * PRESSURE_UNIT_PA * slope,
+        if self.edges.supply_droop == 0.0 {
+            self.tangent_from::<false>(motion)
+        } else {
+            self.tangent_from::<true>(motion)
         }
     }
 
     fn lanes(&self, peers: &[&dyn ForceLaw]) -> Option<Box<dyn LaneLaw>> {
-        gather(peers, Orifice::split, Orifice::join)
+        let droops = |law: &&dyn ForceLaw| {
+            let law: &dyn Any = *law;
+            let own = law.downcast_ref::<Orifice>();
+            own.is_none_or(|own| own.edges.supply_droop != 0.0)
+        };
+        if peers.iter().any(droops) {
+            gather(peers, Orifice::split, |n| Lane::<true>(Orifice::join(n)))
+        } else {
+            gather(peers, Orifice::split, |n| Lane::<false>(Orifice::join(n)))
+        }
+    }
+}
+
+/// An orifice among eight: without a branch, and without the root of a supply that droops where none does.
+struct Lane<const DROOPS: bool>(Orifice);
+
+impl<const DROOPS: bool> ForceLaw for Lane<DROOPS> {
+    #[inline(always)]
+    fn force(&self, motion: MemberMotion) -> f64 {
+        self.tangent(motion).force
+    }
+
+    #[inline(always)]
+    fn tangent(&self, motion: MemberMotion) -> Tangent {
+        self.0.tangent_from::<DROOPS>(motion)
     }
 }
 
 /// Two for each valve.
-pub(crate) fn orifices(model: &Model) -> Vec<Element> {
-    let each = model.valves.iter().flat_map(|valve| {
-        let cylinder = model.cylinders.iter().find(|c| c.name == valve.cylinder);
+pub(super) fn of(model: &Model) -> Vec<Element> {
+    let each = model.elements.valves.iter().flat_map(|valve| {
+        let cylinder = model
+            .elements
+            .cylinders
+            .iter()
+            .find(|c| c.name == valve.cylinder);
         let pair =
             cylinder.map(|cylinder| [0, 1].map(|chamber| orifice(model, valve, cylinder, chamber)));
         pair.into_iter().flatten().flatten()

@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Body, Point};
-use crate::Model;
+use crate::element::Table;
+use crate::refuse::item;
+use crate::{Model, ModelError};
 
 /// `[[body]]` of a model file.
 #[derive(Serialize, Deserialize)]
@@ -22,14 +24,14 @@ pub(crate) struct BodyFile {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PointFile {
-    pub(crate) name: String,
-    pub(crate) body: String,
+    name: String,
+    body: String,
     offset: f64,
 }
 
-impl BodyFile {
+impl Table for BodyFile {
     /// Adds the body without its points.
-    pub(crate) fn add_to(self, model: &mut Model) {
+    fn add_to(self, model: &mut Model) -> Result<(), ModelError> {
         let body = Body {
             name: self.name,
             points: vec![],
@@ -39,10 +41,11 @@ impl BodyFile {
         for (mass, uncertainty) in model.masses.iter_mut().rev().zip(stated) {
             mass.uncertainty = uncertainty;
         }
+        Ok(())
     }
 
     /// The bodies of a model with the values of their coordinates.
-    pub(crate) fn all_of(model: &Model) -> Vec<BodyFile> {
+    fn all_of(model: &Model) -> Vec<BodyFile> {
         let coordinate = |name: &str| model.masses.iter().find(|mass| mass.name == name);
         let file = |body: &Body| {
             let (heave, roll) = (coordinate(&body.name)?, coordinate(&body.roll())?);
@@ -54,30 +57,34 @@ impl BodyFile {
                 inertia_uncertainty: roll.uncertainty,
             })
         };
-        model.bodies.iter().filter_map(file).collect()
+        model.elements.bodies.iter().filter_map(file).collect()
     }
 }
 
-impl PointFile {
-    /// The point; `None` where the model has no such body.
-    pub(crate) fn add_to(self, model: &mut Model) -> Option<()> {
-        let mut bodies = model.bodies.iter_mut();
-        let body = bodies.find(|body| body.name == self.body)?;
+impl Table for PointFile {
+    fn add_to(self, model: &mut Model) -> Result<(), ModelError> {
+        let mut bodies = model.elements.bodies.iter_mut();
+        let body = bodies.find(|body| body.name == self.body);
+        let body = body.ok_or_else(|| ModelError::Shape {
+            place: item("point", &self.name),
+            found: format!("body = \"{}\"", self.body),
+            needed: "the name of a [[body]]".into(),
+        })?;
         body.points.push(Point {
             name: self.name,
             offset_m: self.offset,
         });
-        Some(())
+        Ok(())
     }
 
     /// The points of a model.
-    pub(crate) fn all_of(model: &Model) -> Vec<PointFile> {
+    fn all_of(model: &Model) -> Vec<PointFile> {
         let of = |body: &Body, point: &Point| PointFile {
             name: point.name.clone(),
             body: body.name.clone(),
             offset: point.offset_m,
         };
-        let bodies = model.bodies.iter();
+        let bodies = model.elements.bodies.iter();
         bodies
             .flat_map(|body| body.points.iter().map(move |point| of(body, point)))
             .collect()

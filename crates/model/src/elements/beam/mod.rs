@@ -76,53 +76,6 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-/// A value of a beam that its matrices depend on.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum BeamValue {
-    /// L.
-    Length,
-    /// h.
-    Thickness,
-    /// E.
-    YoungsModulus,
-    /// ρ.
-    Density,
-}
-
-impl BeamValue {
-    /// All of them.
-    pub const ALL: [BeamValue; 4] = [
-        BeamValue::Length,
-        BeamValue::Thickness,
-        BeamValue::YoungsModulus,
-        BeamValue::Density,
-    ];
-
-    /// As the model file calls it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            BeamValue::Length => "length",
-            BeamValue::Thickness => "thickness",
-            BeamValue::YoungsModulus => "youngs_modulus",
-            BeamValue::Density => "density",
-        }
-    }
-
-    /// Powers of the value in the mass, damping and stiffness of the beam: ρ b h L, √(k m) and E b h³/L³.
-    pub(crate) fn powers(self) -> [f64; 3] {
-        match self {
-            BeamValue::Length => [1.0, -1.0, -3.0],
-            BeamValue::Thickness => [1.0, 2.0, 3.0],
-            BeamValue::YoungsModulus => [0.0, 0.5, 1.0],
-            BeamValue::Density => [1.0, 0.5, 0.0],
-        }
-    }
-}
-
 impl Beam {
     /// Whether a node is a free end of this beam, named after it.
     fn is_own(&self, node: &str) -> bool {
@@ -133,11 +86,6 @@ impl Beam {
     /// Name of the coordinate of a mode, from 1.
     fn mode_name(&self, mode: usize) -> String {
         format!("{}.mode{mode}", self.name)
-    }
-
-    /// Whether a coordinate is one of the modes.
-    pub(crate) fn is_mode(&self, coordinate: &str) -> bool {
-        (1..=self.modes).any(|mode| self.mode_name(mode) == coordinate)
     }
 
     /// ρ b h L, kg.

@@ -15,12 +15,10 @@
 
 mod cylinder;
 mod flow;
-mod value;
 mod valve;
 
 pub use cylinder::Cylinder;
 pub use flow::Edges;
-pub use value::DriveValue;
 pub use valve::Valve;
 
 /// P of (1), Pa.

@@ -11,9 +11,11 @@ const LAMINAR_PA: f64 = 5e4;
 /// ```
 #[inline(always)]
 pub(super) fn root(drop: f64) -> [f64; 2] {
+    // One division: g = (Δ² + δ²)^-¼, and g⁴ is that of the slope.
     let square = drop * drop + LAMINAR_PA * LAMINAR_PA;
-    let fourth = square.sqrt().sqrt();
-    [drop / fourth, (1.0 - 0.5 * drop * drop / square) / fourth]
+    let g = 1.0 / square.sqrt().sqrt();
+    let share = drop * (g * g);
+    [drop * g, (1.0 - 0.5 * (share * share)) * g]
 }
 
 /// The two edges of a valve at one chamber: what [`crate::Valve::flow`] computes with.
@@ -43,6 +45,13 @@ impl Edges {
     #[inline(always)]
     #[must_use]
     pub fn flow(&self, spool: f64, pressure: f64) -> [f64; 2] {
+        self.flow_from::<true>(spool, pressure)
+    }
+
+    /// As [`Edges::flow`], for a supply of which is known whether it droops: `false` stands for R = 0 and leaves its root out.
+    #[inline(always)]
+    #[must_use]
+    pub fn flow_from<const DROOPS: bool>(&self, spool: f64, pressure: f64) -> [f64; 2] {
         let side = if spool > 0.0 { 1.0 } else { -1.0 };
         let open = (spool.abs() - self.overlap).clamp(0.0, 1.0);
         let width = self.flow_gain * open * (1.0 + side * self.asymmetry);
@@ -54,6 +63,10 @@ impl Edges {
         };
         let [root, slope] = root(drop);
         let (flow, per_drop) = (width * root, width * slope);
+        let sign = if is_filling { 1.0 } else { -1.0 };
+        if !DROOPS {
+            return [sign * flow, -per_drop];
+        }
         let droop = width * width * self.supply_droop;
         let sum = (droop * droop + 4.0 * flow * flow).sqrt();
         let is_drooping = is_filling & (droop != 0.0) & (flow > 0.0);
@@ -63,7 +76,6 @@ impl Edges {
             flow
         };
         let per_flow = if is_drooping { 2.0 * flow / sum } else { 1.0 };
-        let sign = if is_filling { 1.0 } else { -1.0 };
         [sign * drawn, -per_flow * per_drop]
     }
 }
