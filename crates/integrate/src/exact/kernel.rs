@@ -52,7 +52,7 @@ impl<const N: usize> Fixed<N> {
 }
 
 #[inline(always)]
-fn array<const N: usize>(slice: &[f64]) -> [f64; N] {
+pub(super) fn array<const N: usize>(slice: &[f64]) -> [f64; N] {
     std::array::from_fn(|i| slice[i])
 }
 
@@ -65,18 +65,33 @@ fn add_product<const N: usize>(block: &Block<N>, vector: &[f64; N], sum: &mut [f
     }
 }
 
+impl<const N: usize> Fixed<N> {
+    /// The step from a displacement and a velocity.
+    #[inline(always)]
+    pub(super) fn next(
+        &self,
+        [x, v]: &[[f64; N]; 2],
+        before: &[f64; N],
+        after: &[f64; N],
+    ) -> [[f64; N]; 2] {
+        std::array::from_fn(|half| {
+            let mut sum = [0.0; N];
+            add_product(&self.gamma0[half], before, &mut sum);
+            add_product(&self.gamma1[half], after, &mut sum);
+            add_product(&self.phi[half][0], x, &mut sum);
+            add_product(&self.phi[half][1], v, &mut sum);
+            sum
+        })
+    }
+}
+
 impl<const N: usize> Kernel for Fixed<N> {
     #[inline(always)]
     fn step(&mut self, state: &[f64], before: &[f64], after: &[f64], next: &mut [f64]) {
-        let (x, v) = (array::<N>(&state[..N]), array::<N>(&state[N..2 * N]));
-        let (f0, f1) = (array::<N>(&before[..N]), array::<N>(&after[..N]));
-        for (half, out) in next[..2 * N].chunks_exact_mut(N).enumerate() {
-            let mut sum = [0.0; N];
-            add_product(&self.gamma0[half], &f0, &mut sum);
-            add_product(&self.gamma1[half], &f1, &mut sum);
-            add_product(&self.phi[half][0], &x, &mut sum);
-            add_product(&self.phi[half][1], &v, &mut sum);
-            out.copy_from_slice(&sum);
+        let state = [array::<N>(&state[..N]), array::<N>(&state[N..])];
+        let ends = [before, after].map(array::<N>);
+        for (half, out) in self.next(&state, &ends[0], &ends[1]).iter().enumerate() {
+            next[half * N..(half + 1) * N].copy_from_slice(out);
         }
     }
 

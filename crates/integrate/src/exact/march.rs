@@ -19,7 +19,7 @@
 //! References: \[Moreau1988\]; \[Hochbruck2010\], section 2.
 
 use super::columns::Columns;
-use super::kernel::{Compact, Fixed, Kernel};
+use super::kernel::{Compact, Fixed, Kernel, array};
 use super::law::Element;
 use super::plant::{Plant, spread};
 use super::propagator::ExactPropagator;
@@ -93,7 +93,7 @@ impl ExactPropagator {
         excitation: &Excitation<'_>,
         displacement: &[f64],
         velocity: &[f64],
-        observe: &mut dyn FnMut(&Snapshot<'_>),
+        observe: &mut (impl FnMut(&Snapshot<'_>) + ?Sized),
     ) {
         self.march_reading(
             elements,
@@ -112,10 +112,20 @@ impl ExactPropagator {
         excitation: &Excitation<'_>,
         [displacement, velocity]: [&[f64]; 2],
         is_read: &dyn Fn(usize) -> bool,
-        observe: &mut dyn FnMut(&Snapshot<'_>),
+        observe: &mut (impl FnMut(&Snapshot<'_>) + ?Sized),
     ) {
         let mut state: Vec<f64> = displacement.iter().chain(velocity).copied().collect();
         state.resize(2 * self.dof_count, 0.0);
+        if elements.is_empty() && excitation.substeps <= 1 {
+            match self.dof_count {
+                1 => return linear(&Fixed::<1>::new(self), excitation, &state, observe),
+                2 => return linear(&Fixed::<2>::new(self), excitation, &state, observe),
+                3 => return linear(&Fixed::<3>::new(self), excitation, &state, observe),
+                4 => return linear(&Fixed::<4>::new(self), excitation, &state, observe),
+                _ => (),
+            }
+        }
+        let observe: &mut dyn FnMut(&Snapshot<'_>) = &mut |at| observe(at);
         let mut plant = Plant::new(self, elements);
         match self.dof_count {
             1 => plant.run(&mut Fixed::<1>::new(self), excitation, &mut state, observe),
@@ -128,6 +138,36 @@ impl ExactPropagator {
                 plant.run(&mut kernel, excitation, &mut state, observe);
             }
         }
+    }
+}
+
+/// The march of a plant without elements, whose state stays in registers: each step waits for the one before.
+fn linear<const N: usize>(
+    kernel: &Fixed<N>,
+    excitation: &Excitation<'_>,
+    state: &[f64],
+    observe: &mut (impl FnMut(&Snapshot<'_>) + ?Sized),
+) {
+    let mut state = [array::<N>(&state[..N]), array::<N>(&state[N..])];
+    let mut before = [0.0; N];
+    for index in 0..excitation.sample_count {
+        let Some(sample) = excitation.sample(index, N) else {
+            return;
+        };
+        let after = array::<N>(sample.force);
+        if index > 0 {
+            state = kernel.next(&state, &before, &after);
+        }
+        before = after;
+        // A copy: what an observer may look at is in memory.
+        let [displacement, velocity] = state;
+        observe(&Snapshot {
+            sample: index,
+            displacement: &displacement,
+            velocity: &velocity,
+            dof_force: sample.force,
+            element_force: &[],
+        });
     }
 }
 

@@ -5,8 +5,8 @@
 pub(super) struct Together {
     /// Places among all elements.
     pub(super) members: Vec<usize>,
-    /// S of each at the ends of the two steps before the last.
-    pub(super) before: Vec<[f64; 2]>,
+    /// S of each at the ends of the four steps before the last.
+    pub(super) before: Vec<[f64; 4]>,
     pub(super) without: Vec<[f64; 2]>,
     pub(super) old: Vec<f64>,
     pub(super) matrix: Vec<f64>,
@@ -18,7 +18,7 @@ impl Together {
         let g = members.len();
         Together {
             members,
-            before: vec![[0.0; 2]; g],
+            before: vec![[0.0; 4]; g],
             without: vec![[0.0; 2]; g],
             old: vec![0.0; g],
             matrix: vec![0.0; g * g],
@@ -29,7 +29,7 @@ impl Together {
     /// At the first sample.
     pub(super) fn begin(&mut self, smooth: &[f64]) {
         for (&i, before) in self.members.iter().zip(&mut self.before) {
-            *before = [smooth[i]; 2];
+            *before = [smooth[i]; 4];
         }
     }
 }

@@ -7,16 +7,17 @@
 //! r = φ(d, v) − S,    A = 1 + φ_v Cᵥ,    A Δ = r,    S ← S + Δ                                        (5)
 //! ```
 //!
-//! from a parabola through the last three steps, after which one step of Newton's method is mostly enough. It ends where Δ is within the square root of the accuracy: what Newton's
-//! method leaves then is its square. A has a diagonal of at least one where a force resists the velocity and needs no
+//! from where a polynomial through the forces of the last five steps leads, so that one step of Newton's method is mostly enough where
+//! they go smoothly. It ends where Δ is within [`LAST_STEP`]: what Newton's method leaves then is
+//! of the order of its square. A has a diagonal of at least one where a force resists the velocity and needs no
 //! pivots.
 
 use super::law::{MemberMotion, Tangent};
 use super::members::Together;
 use super::plant::{FORCE_TOLERANCE, Plant, SECANT_STEPS, SWEEPS};
 
-/// Relative change of the forces in a Newton step after which there is none: the square root of [`FORCE_TOLERANCE`].
-pub(super) const LAST_STEP: f64 = 1e-4;
+/// Relative change of the forces in a Newton step after which there is none: what it leaves is of the order of its square.
+pub(super) const LAST_STEP: f64 = 1e-6;
 
 impl Plant<'_> {
     /// Sweeps over the elements at the most: none is solved again where nothing else moves it.
@@ -29,15 +30,14 @@ impl Plant<'_> {
         }
     }
 
-    /// Takes the forces of the members to where the last three steps lead.
+    /// Takes the forces of the members to where a polynomial through the last five steps leads,
+    /// 5 S₀ − 10 S₁ + 10 S₂ − 5 S₃ + S₄ from the last backwards.
     pub(super) fn extrapolate(&mut self) {
         for (&i, before) in self.together.members.iter().zip(&mut self.together.before) {
             let now = self.smooth[i];
-            let [last, one_before] = *before;
-            // S₂ + (S₂ − S₁) + ((S₂ − S₁) − (S₁ − S₀))
-            let change = now - last;
-            self.smooth[i] = now + (change + (change - (last - one_before)));
-            *before = [now, last];
+            let [s1, s2, s3, s4] = *before;
+            self.smooth[i] = 5.0 * (now - s3) - 10.0 * (s1 - s2) + s4;
+            *before = [now, s1, s2, s3];
         }
     }
 

@@ -153,8 +153,8 @@ impl<'a> Block<'a> {
             open: Mask::ALL,
         };
         let members = &plants[0].together.members;
-        let before =
-            (0..members.len()).map(|a| [0, 1].map(|k| of_plants(&|p| p.together.before[a][k])));
+        let before = (0..members.len())
+            .map(|a| [0, 1, 2, 3].map(|k| of_plants(&|p| p.together.before[a][k])));
         let together = Together::new(members, before.collect());
         let law = |i: usize| -> Box<dyn LaneLaw + 'a> {
             let peers: [&'a dyn ForceLaw; LANES] = sets.map(|set| set.elements[i].law.as_ref());

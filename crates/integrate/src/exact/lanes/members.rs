@@ -6,8 +6,8 @@ use super::Pack;
 pub(super) struct Together {
     /// Places among all elements.
     pub(super) members: Vec<usize>,
-    /// S of each at the ends of the two steps before the last.
-    pub(super) before: Vec<[Pack; 2]>,
+    /// S of each at the ends of the four steps before the last.
+    pub(super) before: Vec<[Pack; 4]>,
     pub(super) without: Vec<[Pack; 2]>,
     pub(super) old: Vec<Pack>,
     pub(super) matrix: Vec<Pack>,
@@ -15,7 +15,7 @@ pub(super) struct Together {
 }
 
 impl Together {
-    pub(super) fn new(members: &[usize], before: Vec<[Pack; 2]>) -> Together {
+    pub(super) fn new(members: &[usize], before: Vec<[Pack; 4]>) -> Together {
         let g = members.len();
         Together {
             members: members.to_vec(),

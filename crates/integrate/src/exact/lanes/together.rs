@@ -27,17 +27,16 @@ impl Block<'_> {
         arch.dispatch(Solve(self, open))
     }
 
-    /// Takes the forces of the members to where the last three steps lead.
+    /// Takes the forces of the members to where the last five steps lead.
     #[inline(always)]
     pub(super) fn extrapolate<S: Simd>(&mut self, simd: S) {
         let members = self.together.members.iter();
         for (&i, before) in members.zip(&mut self.together.before) {
             let now = Wide::of(simd, &self.elements[i].smooth);
-            let last = Wide::of(simd, &before[0]);
-            let change = now - last;
-            let bend = change - (last - Wide::of(simd, &before[1]));
-            self.elements[i].smooth = (now + (change + bend)).pack();
-            *before = [now.pack(), last.pack()];
+            let [s1, s2, s3, s4] = before.each_ref().map(|pack| Wide::of(simd, pack));
+            let (five, ten) = (Wide::splat(simd, 5.0), Wide::splat(simd, 10.0));
+            self.elements[i].smooth = (five * (now - s3) - ten * (s1 - s2) + s4).pack();
+            *before = [now.pack(), s1.pack(), s2.pack(), s3.pack()];
         }
     }
 
