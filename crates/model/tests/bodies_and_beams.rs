@@ -163,7 +163,7 @@ fn verify_files_are_written_as_they_are_read() {
     let mut first = model(&text);
     let again = Model::from_toml(&first.to_toml().unwrap()).unwrap();
     assert_eq!(again.to_toml().unwrap(), first.to_toml().unwrap());
-    assert_eq!(again.elements.bodies, first.bodies);
+    assert_eq!(again.elements.bodies, first.elements.bodies);
     assert_eq!(again.masses, first.masses);
     // What effects have changed is written: a mass, an inertia, Young's modulus.
     let names: Vec<String> = first.masses.iter().map(|mass| mass.name.clone()).collect();
