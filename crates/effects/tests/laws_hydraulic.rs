@@ -77,7 +77,10 @@ fn verify_air_makes_the_oil_softer() {
     let [after, _] = of_pressures(&with("bulk_modulus", &[0.8]));
     near(after[0][0], before[0][0] / 0.8);
     let model = with("bulk_modulus", &[0.8]);
-    let (air, none) = (&model.elements.cylinders[0], &hydraulic().elements.cylinders[0]);
+    let (air, none) = (
+        &model.elements.cylinders[0],
+        &hydraulic().elements.cylinders[0],
+    );
     near(air.oil_stiffness(), 0.8 * none.oil_stiffness());
 }
 
