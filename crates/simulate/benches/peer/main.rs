@@ -2,7 +2,7 @@
 //!
 //! ```sh
 //! python3 -m venv venv && venv/bin/pip install numba scipy
-//! SIMGAP_PEER=venv/bin/python cargo bench -p simgap-simulate --bench peer
+//! SIMGAP_PEER=$PWD/venv/bin/python cargo bench -p simgap-simulate --bench peer
 //! ```
 //!
 //! The other side is `peer.py` beside this file, asked line by line. Without `SIMGAP_PEER` only ours is measured. Both sides
