@@ -112,11 +112,29 @@ pub(crate) fn discrepancies_of(
     layout: &Layout,
     thetas: &[Vec<f64>],
 ) -> Vec<Result<Vec<Signals>, EstimateError>> {
+    discrepancies(problem, layout, thetas, false)
+}
+
+/// The same without what moves in steps.
+pub(crate) fn smooth_discrepancies_of(
+    problem: &Problem,
+    layout: &Layout,
+    thetas: &[Vec<f64>],
+) -> Vec<Result<Vec<Signals>, EstimateError>> {
+    discrepancies(problem, layout, thetas, true)
+}
+
+fn discrepancies(
+    problem: &Problem,
+    layout: &Layout,
+    thetas: &[Vec<f64>],
+    smooth: bool,
+) -> Vec<Result<Vec<Signals>, EstimateError>> {
     let mut simulators = Simulators::new(problem, layout);
     let mut ready = vec![];
     let mut points = vec![];
     for theta in thetas {
-        let of_theta = (0..problem.runs.len()).map(|run| simulators.point(theta, run, false));
+        let of_theta = (0..problem.runs.len()).map(|run| simulators.point(theta, run, smooth));
         let of_theta: Result<Vec<Point>, EstimateError> = of_theta.collect();
         ready.push(of_theta.map(|of_theta| points.extend(of_theta)));
     }
@@ -158,11 +176,11 @@ pub(crate) fn discrepancy(problem: &Problem, run: usize, mut predicted: Signals)
     predicted
 }
 
-/// The size of the step that entry is differentiated with.
+/// The size of the step that entry is differentiated with. A limit goes away from what it limits: one that touches nothing is not seen.
 fn difference(problem: &Problem, layout: &Layout, theta: &[f64], entry: usize) -> f64 {
     let outside = problem.model.is_external();
     let step = [DIFFERENCE, DIFFERENCE_OUTSIDE][usize::from(outside)] * layout.scale[entry];
-    if theta[entry] + step > layout.upper[entry] {
+    if theta[entry] + step > layout.upper[entry] || layout.is_lower_limit[entry] {
         -step
     } else {
         step

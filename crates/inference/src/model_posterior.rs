@@ -176,6 +176,7 @@ impl Relevance {
         channels.any(|((closed, (left, (noise, floor))), gap)| {
             let stands_out = *left > NOISE_KNOWN * floor;
             stands_out
+                && closed > (NOISE_KNOWN - 1.0) * noise
                 && closed > (RELEVANT_SHARE * gap).powi(2)
                 && (is_first || closed > OF_REST * (left - noise))
         })
