@@ -14,7 +14,6 @@
 //!
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
 
-
 use crate::curvature::Curvature;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Column, Linearised, Probe, complete, probe};

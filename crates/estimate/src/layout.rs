@@ -63,8 +63,8 @@ pub(crate) struct Layout {
     pub(crate) upper: Vec<f64>,
     /// Whether an entry is a size or a factor, shared by all records.
     pub(crate) is_size: Vec<bool>,
-    /// Whether an entry is a limit that is not there at minus infinity.
-    pub(crate) is_lower_limit: Vec<bool>,
+    /// Of a limit, the infinity at which it limits nothing.
+    pub(crate) nowhere: Vec<Option<f64>>,
     /// Prior of each entry that is a value of an effect, where sizes of its place are known.
     priors: Vec<Option<(Prior, Parameter)>>,
 }
@@ -100,7 +100,7 @@ impl Layout {
             lower: vec![],
             upper: vec![],
             is_size: vec![],
-            is_lower_limit: vec![],
+            nowhere: vec![],
             priors: vec![],
         };
         let physical: Vec<Vec<f64>> = start
@@ -183,7 +183,7 @@ impl Layout {
         self.lower.push(lower);
         self.upper.push(upper);
         self.is_size.push(false);
-        self.is_lower_limit.push(false);
+        self.nowhere.push(None);
         self.priors.push(None);
     }
 
@@ -251,8 +251,8 @@ impl Layout {
         if let Some(last) = self.is_size.last_mut() {
             *last = parameter.neutral.is_some_and(f64::is_finite) && !parameter.per_record;
         }
-        if let Some(last) = self.is_lower_limit.last_mut() {
-            *last = parameter.neutral == Some(f64::NEG_INFINITY);
+        if let Some(last) = self.nowhere.last_mut() {
+            *last = parameter.neutral.filter(|neutral| neutral.is_infinite());
         }
     }
 

@@ -16,6 +16,9 @@ use crate::{EstimateError, Problem};
 /// nowhere. Rounding takes as little as 1e-7 of it, and with sticking friction not more.
 const DIFFERENCE: f64 = 1e-6;
 
+/// The same for a limit, away from what it limits: one that a single sample just touches is not seen there, as it is not a little farther.
+const DIFFERENCE_OF_LIMIT: f64 = 1e-3;
+
 /// The same for a simulator of the user's, whose solver has a tolerance of its own.
 const DIFFERENCE_OUTSIDE: f64 = 1e-4;
 
@@ -176,11 +179,15 @@ pub(crate) fn discrepancy(problem: &Problem, run: usize, mut predicted: Signals)
     predicted
 }
 
-/// The size of the step that entry is differentiated with. A limit goes away from what it limits: one that touches nothing is not seen.
+/// The size of the step that an entry is differentiated with.
 fn difference(problem: &Problem, layout: &Layout, theta: &[f64], entry: usize) -> f64 {
+    let scale = layout.scale[entry];
+    if let Some(nowhere) = layout.nowhere[entry] {
+        return DIFFERENCE_OF_LIMIT * scale * nowhere.signum();
+    }
     let outside = problem.model.is_external();
-    let step = [DIFFERENCE, DIFFERENCE_OUTSIDE][usize::from(outside)] * layout.scale[entry];
-    if theta[entry] + step > layout.upper[entry] || layout.is_lower_limit[entry] {
+    let step = [DIFFERENCE, DIFFERENCE_OUTSIDE][usize::from(outside)] * scale;
+    if theta[entry] + step > layout.upper[entry] {
         -step
     } else {
         step

@@ -21,7 +21,9 @@ use faer::Mat;
 use simgap_simulate::LANES;
 
 use crate::layout::Layout;
-use crate::linearise::{Linearised, Probe, discrepancies_of, probe, reach, smooth_discrepancies_of};
+use crate::linearise::{
+    Linearised, Probe, discrepancies_of, probe, reach, smooth_discrepancies_of,
+};
 use crate::merit::Merit;
 use crate::normal::{damped_step, normal_equations, projected};
 use crate::signals::Signals;
@@ -140,7 +142,9 @@ impl Line<'_> {
         let together = (LANES / problem.runs.len().max(1)).saturating_sub(1).max(1);
         let powers: Vec<usize> = (0..MOST_DAMPINGS).collect();
         powers.chunks(together).find_map(|powers| {
-            let dampings = powers.iter().map(|power| damping * RAISED.powi(*power as i32));
+            let dampings = powers
+                .iter()
+                .map(|power| damping * RAISED.powi(*power as i32));
             let steps: Vec<Bent> = dampings
                 .filter_map(|damping| {
                     let step = quadratic.solve(&quadratic.gradient, damping)?;
