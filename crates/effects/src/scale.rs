@@ -32,6 +32,8 @@ pub struct SiteScale {
     pub damping_n_s_per_m: f64,
     /// Whether the model has a spring at the site.
     pub has_spring: bool,
+    /// Whether the model has a damper at the site.
+    pub has_damper: bool,
     /// Mass of the lighter of the masses at the site, kg.
     pub mass_kg: f64,
     /// Strongest lines of what the nominal model leaves (channel sites: of this channel), Hz; zero
@@ -62,6 +64,7 @@ impl SiteScale {
             stiffness_n_per_m: force_n / displacement_m,
             damping_n_s_per_m: force_n / velocity_m_per_s,
             has_spring: true,
+            has_damper: true,
             mass_kg: 1.0,
             lines_hz: [0.0; LINES],
             carriers_hz: [0.0; LINES],

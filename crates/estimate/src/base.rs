@@ -7,7 +7,7 @@ use faer::{Mat, Side};
 use simgap_effects::Placed;
 use simgap_simulate::Job;
 
-use crate::fit::{Known, fit_with};
+use crate::fit::fit_with;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, discrepancy, linearise};
 use crate::merit::Merit;
@@ -32,7 +32,6 @@ pub struct Base<'a> {
     pub(crate) fit: &'a Fit,
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
-    objective: f64,
     reach: Reach,
     pub(crate) weights: Vec<f64>,
     /// Of H; without where nothing may be adjusted.
@@ -70,7 +69,6 @@ pub(crate) struct Regressor {
 pub(crate) struct LinearSystem {
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
-    objective: f64,
     channel_weights: Vec<f64>,
     pub(crate) hessian: Mat<f64>,
     gradient: Vec<f64>,
@@ -99,13 +97,12 @@ impl LinearSystem {
         let theta = layout.pack(values);
         let at = linearise(problem, &layout, &theta)?;
         let merit = Merit::new(problem, weights);
-        let (objective, variance) = merit.of(&layout, &theta, &at.discrepancy);
+        let (_, variance) = merit.of(&layout, &theta, &at.discrepancy);
         let channel_weights = merit.weights(&variance);
         let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
         Ok(LinearSystem {
             layout,
             at,
-            objective,
             channel_weights,
             hessian,
             gradient,
@@ -125,7 +122,6 @@ pub fn linearise_at<'a>(
     let LinearSystem {
         layout,
         at,
-        objective,
         channel_weights,
         hessian,
         gradient,
@@ -143,7 +139,6 @@ pub fn linearise_at<'a>(
         fit,
         layout,
         at,
-        objective,
         reach: Reach::of(problem, &fit.estimate.effects),
         weights: channel_weights,
         factor: factorise(&hessian),
@@ -183,11 +178,7 @@ impl Base<'_> {
             }
             Some(column)
         };
-        let known = Known {
-            objective: self.objective,
-            column: &column,
-        };
-        fit_with(self.problem, start, weights, false, Some(known))
+        fit_with(self.problem, start, weights, false, Some(&column))
     }
 
     /// Change of the prediction of every run by each trial, divided by its share.

@@ -14,15 +14,13 @@
 //!
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
 
-use std::sync::Arc;
-
 use crate::curvature::Curvature;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Column, Linearised, Probe, complete, probe};
 use crate::merit::Merit;
 use crate::normal::{normal_equations, variances};
 use crate::signals::Signals;
-use crate::step::Line;
+use crate::step::{LEAST_DAMPING, Line};
 use crate::{EstimateError, FitOptions, Problem, Start};
 
 /// A parameter value with its 95 % interval.
@@ -60,10 +58,6 @@ pub struct Fit {
 
 /// Two-sided 95 % point of the normal distribution.
 pub const NORMAL_95: f64 = 1.959_964;
-/// λ of (4) at the start.
-const FIRST_DAMPING: f64 = 1e-4;
-/// Factor on the squared discrepancy beyond which the sensitivities of a fit are no longer kept.
-const STALE: f64 = 2.0;
 
 /// Fits a set of effects, the nominal parameters under their prior, and the initial states.
 ///
@@ -73,16 +67,10 @@ pub fn fit(problem: &Problem, start: &Start, weights: &FitOptions) -> Result<Fit
     fit_with(problem, start, weights, false, None)
 }
 
-/// Sensitivities that are known before a fit.
-pub(crate) struct Known<'a> {
-    /// The objective where they were taken.
-    pub(crate) objective: f64,
-    /// By layout, run and place.
-    pub(crate) column: &'a dyn Fn(&Layout, usize, usize) -> Option<Column>,
-}
+/// Sensitivities that are known before a fit, by layout, run and place.
+pub(crate) type Known<'a> = &'a dyn Fn(&Layout, usize, usize) -> Option<Column>;
 
-/// As [`fit`], with sensitivities that are known already. Where a step with them does not come near the objective of
-/// where they were taken, the next takes its own.
+/// As [`fit`], with sensitivities that are known already, as long as steps along them keep what they promise.
 pub(crate) fn fit_with(
     problem: &Problem,
     start: &Start,
@@ -101,7 +89,7 @@ pub(crate) fn fit_with(
     let columns: Vec<Vec<Option<Column>>> = (0..problem.runs.len())
         .map(|run| {
             let places = 0..layout.entries(run).count();
-            let column = |place| (known.as_ref()?.column)(&layout, run, place);
+            let column = |place| known?(&layout, run, place);
             places.map(column).collect()
         })
         .collect();
@@ -111,7 +99,6 @@ pub(crate) fn fit_with(
     let mut at = complete(problem, &layout, &theta, first, |run, place| {
         columns[run][place].clone()
     })?;
-    let stale = merit.of_a_factor(STALE);
     let fresh = |at: Linearised, theta: &[f64]| {
         // Those of the effects belong to their point always.
         let known = Probe::of_linearised(at, |place| !layout.is_nuisance(place));
@@ -122,87 +109,60 @@ pub(crate) fn fit_with(
         merit: &merit,
     };
     let along = |_: usize, place: usize| !(weights.keep_nuisance && layout.is_nuisance(place));
-    let base = known.map_or(objective, |known| known.objective);
-    if objective - base > stale {
-        // So far from where they were taken, known sensitivities lead astray, or past what those of the start run into:
-        // whichever step goes further.
-        let own = fresh(at.clone(), &theta)?;
-        let reached = |at: &Linearised| {
-            let next = search.step(&theta, objective, at, &mut FIRST_DAMPING.clone(), along);
-            next.map_or(objective, |next| next.objective)
-        };
-        if reached(&own) < reached(&at) {
-            at = own;
-        }
-    }
     // Whether every sensitivity belongs to this point.
-    let mut exact = !weights.keep_nuisance;
-    // Objective where the kept sensitivities were taken, or that of a better start.
-    let mut taken_at = objective.min(base);
-    let mut damping = FIRST_DAMPING;
+    let mut exact = known.is_none() && !weights.keep_nuisance;
+    let mut damping = LEAST_DAMPING;
     let mut iterations = 0;
     while iterations < weights.most_steps {
-        iterations += 1;
-        let Some(next) = search.step(&theta, objective, &at, &mut damping, along) else {
-            if exact {
-                break;
+        let here = (theta.as_slice(), objective);
+        let quadratic = search.quadratic(&theta, &at);
+        let straight = search.straight(here, &quadratic, damping, along);
+        let is_straight = matches!(straight, Some((_, true)));
+        let (next, keep) = match straight {
+            Some((next, true)) => (next, weights.keep_nuisance),
+            _ if !exact => {
+                // The kept sensitivities mislead: one more try with all of them fresh.
+                at = fresh(at, &theta)?;
+                exact = true;
+                continue;
             }
-            // The kept sensitivities mislead: one more try with all of them fresh.
-            at = fresh(at, &theta)?;
-            (exact, damping, taken_at) = (true, FIRST_DAMPING, objective);
-            continue;
+            straight => {
+                let held = || {
+                    let held = quadratic.without_limits(&layout)?;
+                    search.bent(here, (&held, &at), LEAST_DAMPING)
+                };
+                let bent = search.bent(here, (&quadratic, &at), damping).or_else(held);
+                let straight = straight.map(|(next, _)| (next, damping));
+                let all = bent.into_iter().chain(straight);
+                let least = all.min_by(|a, b| a.0.objective.total_cmp(&b.0.objective));
+                let Some((next, used)) = least else {
+                    break;
+                };
+                damping = used;
+                (next, false)
+            }
         };
+        iterations += 1;
+        damping = (0.1 * damping).max(LEAST_DAMPING);
         let gain = objective - next.objective;
-        let before = std::mem::replace(&mut theta, next.theta);
-        objective = next.objective;
-        let is_far = (taken_at - objective).abs() > stale;
-        if is_far {
-            taken_at = objective;
-        }
-        let keep = weights.keep_nuisance && !is_far;
+        (theta, objective) = (next.theta, next.objective);
         let kept = at.columns;
         at = complete(problem, &layout, &theta, next.probe, |run, place| {
-            (keep && layout.is_nuisance(place)).then(|| {
-                let column = &kept[run][place];
-                match next.is_multiplied {
-                    true => carried(column, ratio(&layout, place, &before, &theta)),
-                    false => column.clone(),
-                }
-            })
+            (keep && layout.is_nuisance(place)).then(|| kept[run][place].clone())
         })?;
-        if gain >= weights.converged {
+        // A straight step with much damping may gain little where much is to be gained.
+        let is_short = is_straight && quadratic.decrement() >= weights.converged;
+        if gain >= weights.converged || (exact && is_short) {
             exact = !keep;
         } else if exact {
             break;
         } else {
             // A small gain along kept sensitivities does not say that there is no larger one.
             at = fresh(at, &theta)?;
-            (exact, taken_at) = (true, objective);
+            exact = true;
         }
     }
     Ok(finish(&layout, &merit, &theta, at, iterations))
-}
-
-/// By how much the entry at a place in the list of [`Layout::entries`] was multiplied, where it is a shared size or factor; one elsewhere.
-fn ratio(layout: &Layout, place: usize, before: &[f64], after: &[f64]) -> f64 {
-    if place >= layout.shared_len() || !layout.is_size[place] {
-        return 1.0;
-    }
-    let ratio = after[place] / before[place];
-    if ratio.is_finite() && ratio > 0.0 {
-        ratio
-    } else {
-        1.0
-    }
-}
-
-/// A sensitivity before a multiplied step: that to the logarithm of a value changes least, so that to the value goes with its inverse.
-fn carried(column: &Column, ratio: f64) -> Column {
-    if ratio == 1.0 {
-        return column.clone();
-    }
-    let times = |signal: &Vec<f64>| signal.iter().map(|value| value / ratio).collect();
-    Arc::new(column.iter().map(times).collect())
 }
 
 fn finish(

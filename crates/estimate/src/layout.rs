@@ -63,6 +63,8 @@ pub(crate) struct Layout {
     pub(crate) upper: Vec<f64>,
     /// Whether an entry is a size or a factor, shared by all records.
     pub(crate) is_size: Vec<bool>,
+    /// Whether an entry is a limit, at one infinity or the other without effect.
+    pub(crate) is_limit: Vec<bool>,
     /// Prior of each entry that is a value of an effect, where sizes of its place are known.
     priors: Vec<Option<(Prior, Parameter)>>,
 }
@@ -98,6 +100,7 @@ impl Layout {
             lower: vec![],
             upper: vec![],
             is_size: vec![],
+            is_limit: vec![],
             priors: vec![],
         };
         let physical: Vec<Vec<f64>> = start
@@ -180,6 +183,7 @@ impl Layout {
         self.lower.push(lower);
         self.upper.push(upper);
         self.is_size.push(false);
+        self.is_limit.push(false);
         self.priors.push(None);
     }
 
@@ -244,8 +248,9 @@ impl Layout {
         if let (Some(last), Some(mean)) = (self.prior_std.last_mut(), self.prior_mean.last_mut()) {
             (*last, *mean) = (std, neutral);
         }
-        if let Some(last) = self.is_size.last_mut() {
-            *last = parameter.neutral.is_some_and(f64::is_finite) && !parameter.per_record;
+        if let (Some(size), Some(limit)) = (self.is_size.last_mut(), self.is_limit.last_mut()) {
+            *size = parameter.neutral.is_some_and(f64::is_finite) && !parameter.per_record;
+            *limit = parameter.neutral.is_some_and(f64::is_infinite);
         }
     }
 

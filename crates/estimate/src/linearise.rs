@@ -106,17 +106,18 @@ fn batch(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateErr
     subtracted.collect()
 }
 
-/// Measured minus predicted, for every run and channel, at several vectors at once.
+/// Measured minus predicted, for every run and channel, at several vectors at once; without what moves in steps if `smooth`.
 pub(crate) fn discrepancies_of(
     problem: &Problem,
     layout: &Layout,
     thetas: &[Vec<f64>],
+    smooth: bool,
 ) -> Vec<Result<Vec<Signals>, EstimateError>> {
     let mut simulators = Simulators::new(problem, layout);
     let mut ready = vec![];
     let mut points = vec![];
     for theta in thetas {
-        let of_theta = (0..problem.runs.len()).map(|run| simulators.point(theta, run, false));
+        let of_theta = (0..problem.runs.len()).map(|run| simulators.point(theta, run, smooth));
         let of_theta: Result<Vec<Point>, EstimateError> = of_theta.collect();
         ready.push(of_theta.map(|of_theta| points.extend(of_theta)));
     }
@@ -425,7 +426,7 @@ at = "block"
                 let moved = |h: f64| {
                     let mut theta = theta.clone();
                     theta[entry] += h * layout.scale[entry];
-                    let moved = discrepancies_of(&problem, &layout, &[theta]).swap_remove(0);
+                    let moved = discrepancies_of(&problem, &layout, &[theta], false).swap_remove(0);
                     moved.unwrap().swap_remove(0).swap_remove(0)
                 };
                 let h = 1e-3;

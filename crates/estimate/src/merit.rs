@@ -33,11 +33,6 @@ impl<'a> Merit<'a> {
         }
     }
 
-    /// What a factor on the squared discrepancy of every channel changes in J.
-    pub(crate) fn of_a_factor(&self, factor: f64) -> f64 {
-        0.5 * self.effective_share.iter().sum::<f64>() * self.count * factor.ln()
-    }
-
     /// V_c, over the samples within reach.
     pub(crate) fn variance(&self, discrepancy: &[Signals], reach: &Reach) -> Vec<f64> {
         (0..self.floor.len())

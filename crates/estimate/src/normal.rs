@@ -43,6 +43,24 @@ pub(crate) fn normal_equations(
     (hessian, gradient)
 }
 
+/// Jᵀ W s of signals of all runs, in units of the scales.
+pub(crate) fn projected(
+    layout: &Layout,
+    at: &Linearised,
+    signals: &[Signals],
+    weights: &[f64],
+) -> Vec<f64> {
+    let mut projected = vec![0.0; layout.len()];
+    for (run, columns) in at.columns.iter().enumerate() {
+        let columns: Vec<&Signals> = columns.iter().map(AsRef::as_ref).collect();
+        let products = inner_products(&columns, &[&signals[run]], weights, |_, _| true);
+        for (place, entry) in layout.entries(run).enumerate() {
+            projected[entry] += products[(place, 0)];
+        }
+    }
+    projected
+}
+
 /// A diagonal entry below this share of the largest belongs to a direction the data do not see.
 const UNSEEN: f64 = 1e-24;
 

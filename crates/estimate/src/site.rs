@@ -86,6 +86,7 @@ impl Problem {
                 force_n / velocity_m_per_s
             },
             has_spring: stiffness > 0.0,
+            has_damper: damping > 0.0,
             mass_kg: at_port.or(mass_at(&self.model, at)).unwrap_or(1.0),
             lines_hz: self.lines_left(fit, at),
             carriers_hz: self.carriers_left(fit, at),

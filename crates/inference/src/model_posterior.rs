@@ -23,7 +23,7 @@ use crate::search::Search;
 use crate::shapley::shapley_values;
 
 /// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
-/// name, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
+/// name, nor one that closes no more in any than noise is known to, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
 /// expected to explain; nor one beside others that explains less than this share of what is left above the noise, mean square.
 const OF_REST: f64 = 0.5;
 /// Log odds beyond which a set does not count.
@@ -176,6 +176,7 @@ impl Relevance {
         channels.any(|((closed, (left, (noise, floor))), gap)| {
             let stands_out = *left > NOISE_KNOWN * floor;
             stands_out
+                && closed > (NOISE_KNOWN - 1.0) * noise
                 && closed > (RELEVANT_SHARE * gap).powi(2)
                 && (is_first || closed > OF_REST * (left - noise))
         })

@@ -9,8 +9,8 @@
 //! the best set: each effect removed, exchanged, grown, shrunk; one more added; rescaled; until it stays
 //! ```
 //!
-//! A stage is left out where the best set leaves nothing but noise, or, if it is one of wrong parameters, next to nothing of the gap, and
-//! no candidate promises to be worth a name: its score pays for its prior and for the values that it adjusts, it moves an output by enough, and a fit
+//! A stage is left out where the best set leaves nothing but noise, or, if it is one of wrong parameters, less than an effect that is worth
+//! a name would move, and no candidate promises to be worth a name: its score pays for its prior and for the values that it adjusts, it moves an output by enough, and a fit
 //! keeps it.
 
 use std::collections::BTreeSet;
@@ -22,9 +22,10 @@ use simgap_estimate::{
 };
 
 use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
-use crate::gap::{Gap, RELEVANT_SHARE};
+use crate::extended::Extended;
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
+use crate::motion;
 use crate::noise_model::{NOISE_KNOWN, NoiseModel, noise_variance, rounding_variance, stepped};
 
 /// Sets of each size that the next size starts from.
@@ -33,8 +34,9 @@ const SURVIVORS: [usize; 2] = [5, 3];
 const FITTED: [usize; 3] = [18, 6, 4];
 /// Sets that are fitted again under another noise model.
 const REFITTED: usize = 16;
-/// Candidates fitted in the place of each effect of the best set, and beside it.
-const EXCHANGED: usize = 8;
+/// Sets that are extended in the end: the best one may be a stand-in for a larger set that holds the next.
+const LEADING: usize = 3;
+/// Candidates fitted beside each of them; in the place of one of its effects as many as beside a single one.
 const ADDED: usize = 4;
 /// Effects of a set at the most; wrong nominal parameters besides.
 const MOST_EFFECTS: usize = 3;
@@ -81,6 +83,7 @@ pub struct Search<'a> {
     pub(crate) nominal: NominalPrior,
     /// When to stop.
     pub budget: Budget<'a>,
+    pub(crate) extended: Extended,
 }
 
 impl<'a> Search<'a> {
@@ -99,6 +102,7 @@ impl<'a> Search<'a> {
             space,
             nominal: NominalPrior::Wrong,
             budget,
+            extended: Extended::default(),
         }
     }
 
@@ -114,6 +118,7 @@ impl<'a> Search<'a> {
                 .of_families(|family| family == Family::NominalParameter),
             nominal: NominalPrior::Stated(stated_std),
             budget: self.budget,
+            extended: Extended::default(),
         }
     }
 
@@ -160,6 +165,7 @@ impl<'a> Search<'a> {
             self.noise = self.noise.with_colour_of(&least.fit);
         }
         self.options = self.noise.search_options();
+        self.extended = Extended::default();
         let mut seen = BTreeSet::new();
         let again = pool.iter().enumerate().filter(|(i, set)| {
             let size = set.effects().len();
@@ -178,12 +184,8 @@ impl<'a> Search<'a> {
         fitted
     }
 
-    /// Whether nothing can be added to the best set, or nothing that could make it likelier. `base` holds no effect.
-    fn is_settled(
-        &self,
-        pool: &[CandidateModel],
-        base: &CandidateModel,
-    ) -> Result<bool, EstimateError> {
+    /// Whether nothing can be added to the best set, or nothing that could make it likelier.
+    fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
@@ -199,14 +201,15 @@ impl<'a> Search<'a> {
         }
         let noise = self.noise_of(best);
         let leaves_noise = self.leaves_noise(best, &noise);
-        let gap = Gap {
-            square: base.fit.variance.clone(),
-            noise,
-            std: self.problem.output_std(),
-        };
-        // Of a law that leaves little, another may leave less; a wrong parameter that does is the plainest cause.
+        // An effect that is worth a name moves more than this leaves; of a law, another may leave less.
+        let over_noise = best.fit.variance.iter().zip(&noise);
+        let over_noise: Vec<f64> = over_noise
+            .map(|(left, noise)| (left - NOISE_KNOWN * noise).max(0.0).sqrt())
+            .collect();
         let are_parameters = !best.effects().is_empty() && best.effects().iter().all(is_nominal);
-        let leaves_little = are_parameters && gap.left(&best.fit.variance) <= RELEVANT_SHARE;
+        let motion = self.problem.output_std();
+        let hides_nothing = motion::is_enough(&over_noise, &motion).all(|enough| !enough);
+        let leaves_little = are_parameters && hides_nothing;
         Ok((leaves_little || leaves_noise) && !self.is_promising(best)?)
     }
 
@@ -277,7 +280,7 @@ impl<'a> Search<'a> {
     pub fn run(&mut self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
         let step = self.budget.progress;
         let mut pool = vec![base.clone()];
-        if self.is_settled(&pool, base)? {
+        if self.is_settled(&pool)? {
             return Ok(pool);
         }
         step("nominal parameters");
@@ -287,14 +290,14 @@ impl<'a> Search<'a> {
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
         rank(&mut pool);
-        let is_settled = self.is_settled(&pool, base)?;
+        let is_settled = self.is_settled(&pool)?;
         if is_settled || !self.leaves_noise_by_its_colour(&pool) {
             return self.run_on((base, &linear), recalibrated, pool, is_settled);
         }
         pool = self.recolour(&pool);
         let base = &self.fit(&base.fit.estimate)?;
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
-        let is_settled = self.is_settled(&pool, base)?;
+        let is_settled = self.is_settled(&pool)?;
         self.run_on((base, &linear), recalibrated, pool, is_settled)
     }
 
@@ -321,7 +324,7 @@ impl<'a> Search<'a> {
             rank(&mut pool);
         }
         if let Some(recalibrated) = recalibrated
-            && !self.is_settled(&pool, base)?
+            && !self.is_settled(&pool)?
         {
             step("effects beside re-estimated parameters");
             pool.extend(self.beside_recalibrated(&recalibrated)?);
@@ -330,7 +333,7 @@ impl<'a> Search<'a> {
         let mut front: Vec<CandidateModel> = pool.clone();
         front.retain(|set| !set.effects().is_empty() && !self.is_full(set));
         for (size, survivors) in SURVIVORS.iter().enumerate() {
-            if self.is_settled(&pool, base)? {
+            if self.is_settled(&pool)? {
                 return Ok(pool);
             }
             step(["pairs of effects", "sets of three"][size]);
@@ -343,7 +346,7 @@ impl<'a> Search<'a> {
                 next.extend(self.unite(&pool)?);
                 next.extend(self.fit_joint(base, linear)?);
                 rank(&mut next);
-                if !self.is_settled(&next, base)? {
+                if !self.is_settled(&next)? {
                     step("pairs from many values");
                     next.extend(self.extend_from_many_values(&best)?);
                 }
@@ -354,7 +357,7 @@ impl<'a> Search<'a> {
             front = next;
             front.retain(|set| !self.is_full(set));
         }
-        if !self.is_settled(&pool, base)? {
+        if !self.is_settled(&pool)? {
             step("single effects in stretches");
             // Where stretches cannot be simulated, nothing is found in them.
             let found = self.multiple_shooting(base).unwrap_or_default();
@@ -371,7 +374,7 @@ impl<'a> Search<'a> {
         Ok(pool)
     }
 
-    /// Changes the best set by one effect, and again, as long as a better one is found and the search has not ended. What was tried stays
+    /// Adds to the best sets, changes the best of them by one effect, and again, as long as a better one is found and the search has not ended. What was tried stays
     /// in the pool.
     ///
     /// # Errors
@@ -385,14 +388,17 @@ impl<'a> Search<'a> {
                 return Ok(());
             }
             (self.budget.progress)("changes to the best set");
-            if !self.is_full(&best) {
-                pool.extend(self.extend(&best, ADDED)?);
+            let mut seen = BTreeSet::new();
+            let leading = pool.iter().filter(|set| seen.insert(set.key()));
+            let leading: Vec<CandidateModel> = leading.take(LEADING).cloned().collect();
+            for set in leading.iter().filter(|set| !self.is_full(set)) {
+                pool.extend(self.extend(set, ADDED)?);
             }
             let changed = (0..best.effects().len()).into_par_iter().map(|i| {
                 let mut changed = self.grow(&best, i)?;
                 changed.extend(self.shrink(&best, i));
                 if let Ok(smaller) = self.fit(&self.without(&best, i)) {
-                    changed.extend(self.extend(&smaller, EXCHANGED)?);
+                    changed.extend(self.extend(&smaller, FITTED[1])?);
                     changed.push(smaller);
                 }
                 Ok(changed)

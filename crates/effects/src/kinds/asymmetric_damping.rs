@@ -103,6 +103,15 @@ impl Effect for AsymmetricDamping {
         }
     }
 
+    /// Together with the damper of the model it takes energy in both directions, as every damper does.
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
+        let damper = match scale.has_damper {
+            true => scale.damping_n_s_per_m,
+            false => 0.0,
+        };
+        values.iter().all(|value| damper + value >= 0.0)
+    }
+
     fn coincidence(&self) -> Option<[usize; 2]> {
         Some([0, 1])
     }

@@ -31,8 +31,6 @@ use simgap_signal::correlation::effective_sample_count;
 pub const NOISE_KNOWN: f64 = 1.1;
 /// A fit of the search stops when a step gains less than this: sets are told apart by more.
 const SEARCH_CONVERGED: f64 = 0.1;
-/// Steps of a fit of the search: it stops in a flat valley, a final fit does not.
-const SEARCH_STEPS: usize = 10;
 
 /// What no set is expected to explain.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +86,6 @@ impl NoiseModel {
         FitOptions {
             converged: SEARCH_CONVERGED,
             keep_nuisance: true,
-            most_steps: SEARCH_STEPS,
             ..self.final_options()
         }
     }

@@ -23,12 +23,15 @@ const WINDING: usize = 4;
 const FINISHED: usize = 12;
 
 impl Search<'_> {
-    /// Every set worth a fit with one more effect than `base`, best first.
+    /// Every set worth a fit with one more effect than `base`, best first; none where it has been asked before.
     pub(crate) fn extend(
         &self,
         base: &CandidateModel,
         most: usize,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
+        if self.extended.holds(base, most) {
+            return Ok(vec![]);
+        }
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         self.extend_at(base, &linear, most)
     }
@@ -39,6 +42,7 @@ impl Search<'_> {
         linear: &Base<'_>,
         most: usize,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
+        self.extended.note(base, most);
         let scores = self.scores(base, linear);
         let starts: Vec<Start> = pick(scores, most, base.effects().is_empty())
             .into_iter()

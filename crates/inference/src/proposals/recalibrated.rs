@@ -11,6 +11,7 @@ use simgap_effects::{Family, Placed};
 use simgap_estimate::{EstimateError, Fit, FitOptions, Start, linearise_at};
 
 use crate::candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
+use crate::extended::Extended;
 use crate::proposals::compensated::compensated;
 use crate::search::Search;
 use crate::stretches::recalibrate;
@@ -51,6 +52,7 @@ impl Search<'_> {
             space: self
                 .space
                 .of_families(|family| family != Family::NominalParameter),
+            extended: Extended::default(),
             ..*self
         };
         let linear = linearise_at(self.problem, &recalibrated.fit, &wide.options)?;
