@@ -23,7 +23,7 @@ use crate::search::Search;
 use crate::shapley::shapley_values;
 
 /// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
-/// name, nor one that closes no more in any than noise is known to, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
+/// name, nor one that closes no more in any than a tenth of what it is rounded by ([`NOISE_KNOWN`]), which is no noise, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
 /// expected to explain; nor one beside others that explains less than this share of what is left above the noise, mean square.
 const OF_REST: f64 = 0.5;
 /// Log odds beyond which a set does not count.
@@ -96,9 +96,17 @@ pub fn model_posterior(
     pool: Vec<CandidateModel>,
     gap: &[f64],
 ) -> Result<ModelPosterior, EstimateError> {
+    let step = |channel| {
+        search
+            .problem
+            .lattice_of(channel)
+            .map_or(0.0, |(step, _)| step)
+    };
+    let rounded = (0..gap.len()).map(|channel| step(channel) * step(channel) / 12.0);
     let relevance = Relevance {
         gap: gap.to_vec(),
         motion: search.problem.output_std(),
+        rounded: rounded.collect(),
     };
     let asked = relevance.ask(search, pool)?;
     let shares = match asked.best() {
@@ -134,6 +142,8 @@ struct Relevance {
     gap: Vec<f64>,
     /// Motion of each channel, rms.
     motion: Vec<f64>,
+    /// What each channel is rounded by, mean square.
+    rounded: Vec<f64>,
 }
 
 impl Relevance {
@@ -171,12 +181,12 @@ impl Relevance {
             .zip(search.unexplainable(without));
         let left = without.fit.variance.iter().zip(noise);
         let channels = closed(with, without).zip(left);
-        let mut channels = channels.zip(&self.gap);
+        let mut channels = channels.zip(self.gap.iter().zip(&self.rounded));
         let is_first = without.effects().is_empty();
-        channels.any(|((closed, (left, (noise, floor))), gap)| {
+        channels.any(|((closed, (left, (noise, floor))), (gap, rounded))| {
             let stands_out = *left > NOISE_KNOWN * floor;
             stands_out
-                && closed > (NOISE_KNOWN - 1.0) * noise
+                && closed > (NOISE_KNOWN - 1.0) * rounded
                 && closed > (RELEVANT_SHARE * gap).powi(2)
                 && (is_first || closed > OF_REST * (left - noise))
         })
