@@ -192,14 +192,15 @@ impl Line<'_> {
         let Some(Ok(here)) = there.next() else {
             return vec![];
         };
+        let own_reach = reach(self.merit.problem, layout, theta);
         let bent = steps.iter().zip(thetas.iter().skip(1)).zip(there);
         bent.filter_map(|((bent, near), there)| {
             let mut second = there.ok()?;
+            let near_reach = reach(self.merit.problem, layout, near);
             for (run, second) in second.iter_mut().enumerate() {
                 self.second_derivative(run, (&here[run], at), &bent.step, second);
-                for point in [theta, near] {
-                    reach(self.merit.problem, layout, point).keep(run, second);
-                }
+                own_reach.keep(run, second);
+                near_reach.keep(run, second);
             }
             let pull = projected(layout, at, &second, &quadratic.weights);
             let bend = quadratic.solve(&scaled(&pull, -0.5), bent.damping)?;

@@ -18,12 +18,13 @@ use crate::candidate_model::{
 };
 use crate::gap::RELEVANT_SHARE;
 use crate::motion;
-use crate::noise_model::NOISE_KNOWN;
+use crate::noise_model::{NOISE_KNOWN, stored_rounding_variance};
 use crate::search::Search;
 use crate::shapley::shapley_values;
 
 /// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
-/// name, nor one that closes no more in any than a tenth of what it is rounded by ([`NOISE_KNOWN`]), which is no noise, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
+/// name, nor one that closes no more in any than a tenth of what it is rounded by ([`NOISE_KNOWN`]), for rounding follows the
+/// motion, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
 /// expected to explain; nor one beside others that explains less than this share of what is left above the noise, mean square.
 const OF_REST: f64 = 0.5;
 /// Log odds beyond which a set does not count.
@@ -96,17 +97,10 @@ pub fn model_posterior(
     pool: Vec<CandidateModel>,
     gap: &[f64],
 ) -> Result<ModelPosterior, EstimateError> {
-    let step = |channel| {
-        search
-            .problem
-            .lattice_of(channel)
-            .map_or(0.0, |(step, _)| step)
-    };
-    let rounded = (0..gap.len()).map(|channel| step(channel) * step(channel) / 12.0);
     let relevance = Relevance {
         gap: gap.to_vec(),
         motion: search.problem.output_std(),
-        rounded: rounded.collect(),
+        rounded: stored_rounding_variance(search.problem),
     };
     let asked = relevance.ask(search, pool)?;
     let shares = match asked.best() {

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! A stage is left out where the best set leaves nothing but noise, or, if it is one of wrong parameters, less than an effect that is worth
-//! a name would move, and no candidate promises to be worth a name: its score pays for its prior and for the values that it adjusts, it moves an output by enough, and a fit
-//! keeps it.
+//! a name would move, and no candidate promises to be worth a name: its score pays for its prior and for the values that it
+//! adjusts, it moves an output by enough, and a fit keeps it.
 
 use std::collections::BTreeSet;
 
@@ -374,8 +374,8 @@ impl<'a> Search<'a> {
         Ok(pool)
     }
 
-    /// Adds to the best sets, changes the best of them by one effect, and again, as long as a better one is found and the search has not ended. What was tried stays
-    /// in the pool.
+    /// Adds to the best sets, changes the best of them by one effect, and again, as long as a better one is found and the search has
+    /// not ended. What was tried stays in the pool.
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.

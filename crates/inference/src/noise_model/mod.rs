@@ -21,7 +21,9 @@ mod whitening;
 
 pub use accuracy::accuracy;
 pub use input_noise::{InputNoise, input_noise};
-pub use sensor::{is_sensor_noise, noise_variance, rounding_variance, stepped};
+pub use sensor::{
+    is_sensor_noise, noise_variance, rounding_variance, stepped, stored_rounding_variance,
+};
 pub use whitening::whitening;
 
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};

@@ -44,9 +44,19 @@ pub fn stepped(problem: &Problem, effects: &[Placed]) -> Vec<bool> {
 #[must_use]
 pub fn rounding_variance(problem: &Problem, effects: &[Placed]) -> Vec<f64> {
     let steps = steps(problem, effects).into_iter();
-    steps
-        .map(|step| step.unwrap_or(0.0).powi(2) / 12.0)
-        .collect()
+    steps.map(variance_of_step).collect()
+}
+
+/// The same of the steps in which each channel is stored, whatever stores it so.
+#[must_use]
+pub fn stored_rounding_variance(problem: &Problem) -> Vec<f64> {
+    let channels = 0..problem.model.outputs.len();
+    let steps = channels.map(|channel| problem.lattice_of(channel).map(|(step, _)| step));
+    steps.map(variance_of_step).collect()
+}
+
+fn variance_of_step(step: Option<f64>) -> f64 {
+    step.unwrap_or(0.0).powi(2) / 12.0
 }
 
 /// Whether a discrepancy is noise of a sensor and nothing else, (1).
