@@ -7,7 +7,8 @@ use faer::{Mat, Side};
 use simgap_effects::Placed;
 use simgap_simulate::Job;
 
-use crate::fit::fit_with;
+use crate::fit::{Known, fit_with};
+use crate::gram::{Gram, grams};
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Linearised, discrepancy, linearise};
 use crate::merit::Merit;
@@ -32,6 +33,8 @@ pub struct Base<'a> {
     pub(crate) fit: &'a Fit,
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
+    /// Products of its sensitivities, run by run.
+    grams: Vec<Gram>,
     reach: Reach,
     pub(crate) weights: Vec<f64>,
     /// Of H; without where nothing may be adjusted.
@@ -69,6 +72,7 @@ pub(crate) struct Regressor {
 pub(crate) struct LinearSystem {
     pub(crate) layout: Layout,
     pub(crate) at: Linearised,
+    grams: Vec<Gram>,
     channel_weights: Vec<f64>,
     pub(crate) hessian: Mat<f64>,
     gradient: Vec<f64>,
@@ -99,10 +103,12 @@ impl LinearSystem {
         let merit = Merit::new(problem, weights);
         let (_, variance) = merit.of(&layout, &theta, &at.discrepancy);
         let channel_weights = merit.weights(&variance);
-        let (hessian, gradient) = normal_equations(&layout, &theta, &at, &channel_weights);
+        let grams = grams(&at.columns, variance.len(), [&[], &[]]);
+        let (hessian, gradient) = normal_equations(&layout, &theta, &at, &grams, &channel_weights);
         Ok(LinearSystem {
             layout,
             at,
+            grams,
             channel_weights,
             hessian,
             gradient,
@@ -122,6 +128,7 @@ pub fn linearise_at<'a>(
     let LinearSystem {
         layout,
         at,
+        grams,
         channel_weights,
         hessian,
         gradient,
@@ -139,6 +146,7 @@ pub fn linearise_at<'a>(
         fit,
         layout,
         at,
+        grams,
         reach: Reach::of(problem, &fit.estimate.effects),
         weights: channel_weights,
         factor: factorise(&hessian),
@@ -178,7 +186,11 @@ impl Base<'_> {
             }
             Some(column)
         };
-        fit_with(self.problem, start, weights, false, Some(&column))
+        let known = Known {
+            column: &column,
+            grams: &self.grams,
+        };
+        fit_with(self.problem, start, weights, false, Some(known))
     }
 
     /// Change of the prediction of every run by each trial, divided by its share.

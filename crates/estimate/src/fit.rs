@@ -14,11 +14,14 @@
 //!
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
 
+use faer::Mat;
+
 use crate::curvature::Curvature;
+use crate::gram::Gram;
 use crate::layout::{Freedom, Layout};
 use crate::linearise::{Column, Linearised, Probe, complete, probe};
 use crate::merit::Merit;
-use crate::normal::{normal_equations, variances};
+use crate::normal::variances;
 use crate::signals::Signals;
 use crate::step::{LEAST_DAMPING, Line};
 use crate::{EstimateError, FitOptions, Problem, Start};
@@ -67,8 +70,14 @@ pub fn fit(problem: &Problem, start: &Start, weights: &FitOptions) -> Result<Fit
     fit_with(problem, start, weights, false, None)
 }
 
-/// Sensitivities that are known before a fit, by layout, run and place.
-pub(crate) type Known<'a> = &'a dyn Fn(&Layout, usize, usize) -> Option<Column>;
+/// What is known of sensitivities before a fit.
+#[derive(Clone, Copy)]
+pub(crate) struct Known<'a> {
+    /// Them, by layout, run and place.
+    pub(crate) column: &'a dyn Fn(&Layout, usize, usize) -> Option<Column>,
+    /// Their products, run by run.
+    pub(crate) grams: &'a [Gram],
+}
 
 /// As [`fit`], with sensitivities that are known already, as long as steps along them keep what they promise.
 pub(crate) fn fit_with(
@@ -89,7 +98,7 @@ pub(crate) fn fit_with(
     let columns: Vec<Vec<Option<Column>>> = (0..problem.runs.len())
         .map(|run| {
             let places = 0..layout.entries(run).count();
-            let column = |place| known?(&layout, run, place);
+            let column = |place| (known?.column)(&layout, run, place);
             places.map(column).collect()
         })
         .collect();
@@ -107,7 +116,9 @@ pub(crate) fn fit_with(
     let search = Line {
         layout: &layout,
         merit: &merit,
+        known: known.map_or(&[], |known| known.grams),
     };
+    let mut grams = vec![];
     let along = |_: usize, place: usize| !(weights.keep_nuisance && layout.is_nuisance(place));
     // Whether every sensitivity belongs to this point.
     let mut exact = known.is_none() && !weights.keep_nuisance;
@@ -115,7 +126,7 @@ pub(crate) fn fit_with(
     let mut iterations = 0;
     while iterations < weights.most_steps {
         let here = (theta.as_slice(), objective);
-        let quadratic = search.quadratic(&theta, &at);
+        let quadratic = search.quadratic(&theta, &at, &mut grams);
         let straight = search.straight(here, &quadratic, damping, along);
         let is_straight = matches!(straight, Some((_, true)));
         let (next, keep) = match straight {
@@ -162,20 +173,19 @@ pub(crate) fn fit_with(
             exact = true;
         }
     }
-    Ok(finish(&layout, &merit, &theta, at, iterations))
+    let last = search.quadratic(&theta, &at, &mut grams);
+    Ok(finish(&search, &theta, (at, &last.hessian), iterations))
 }
 
 fn finish(
-    layout: &Layout,
-    merit: &Merit<'_>,
+    Line { layout, merit, .. }: &Line<'_>,
     theta: &[f64],
-    at: Linearised,
+    (at, hessian): (Linearised, &Mat<f64>),
     iterations: usize,
 ) -> Fit {
     let (objective, variance) = merit.of(layout, theta, &at.discrepancy);
-    let (hessian, _) = normal_equations(layout, theta, &at, &merit.weights(&variance));
     let all: Vec<usize> = (0..layout.len()).collect();
-    let curvature = Curvature::of(layout, theta, &hessian);
+    let curvature = Curvature::of(layout, theta, hessian);
     let spread = variances(&curvature.with_fixed_priors(), &all);
     let misfit = objective - merit.prior(layout, theta);
     let estimate = layout.unpack(theta);

@@ -72,6 +72,7 @@ mod curvature;
 mod drift;
 mod effort;
 mod fit;
+mod gram;
 mod initial;
 mod joint;
 mod layout;

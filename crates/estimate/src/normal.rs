@@ -3,44 +3,45 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
+use crate::gram::Gram;
 use crate::layout::Layout;
 use crate::linearise::Linearised;
 use crate::products::inner_products;
 use crate::signals::Signals;
 
-/// H = Jᵀ W J + prior, g = Jᵀ W r − prior gradient, in units of the scales.
+/// H = Jᵀ W J + prior, g = Jᵀ W r − prior gradient, in units of the scales; the products of J are those of its runs.
 pub(crate) fn normal_equations(
     layout: &Layout,
     theta: &[f64],
     at: &Linearised,
+    grams: &[Gram],
     weights: &[f64],
 ) -> (Mat<f64>, Vec<f64>) {
     let len = layout.len();
     let mut hessian = Mat::zeros(len, len);
-    let mut gradient = vec![0.0; len];
-    for (run, columns) in at.columns.iter().enumerate() {
+    for (run, gram) in grams.iter().enumerate() {
         let index = layout.entries(run).collect::<Vec<_>>();
-        let columns: Vec<&Signals> = columns.iter().map(AsRef::as_ref).collect();
-        let last = columns.len();
-        let with_discrepancy = [&columns[..], &[&at.discrepancy[run]]].concat();
-        let is_wanted = |a: usize, b: usize| b <= a || b == last;
-        let products = inner_products(&columns, &with_discrepancy, weights, is_wanted);
-        for a in 0..last {
-            gradient[index[a]] += products[(a, last)];
-            for b in 0..=a {
-                hessian[(index[a], index[b])] += products[(a, b)];
-                if a != b {
-                    hessian[(index[b], index[a])] += products[(a, b)];
-                }
-            }
-        }
+        add_symmetric(&mut hessian, &index, &gram.weighted(weights));
     }
+    let mut gradient = projected(layout, at, &at.discrepancy, weights);
     for i in 0..len {
         let [_, slope, curvature] = layout.prior_at(i, theta[i]);
         hessian[(i, i)] += curvature * layout.scale[i].powi(2);
         gradient[i] -= slope * layout.scale[i];
     }
     (hessian, gradient)
+}
+
+/// Adds products that are given below the diagonal and on it, by the entries of their rows.
+fn add_symmetric(sum: &mut Mat<f64>, index: &[usize], products: &Mat<f64>) {
+    for a in 0..products.nrows() {
+        for b in 0..=a {
+            sum[(index[a], index[b])] += products[(a, b)];
+            if a != b {
+                sum[(index[b], index[a])] += products[(a, b)];
+            }
+        }
+    }
 }
 
 /// Jᵀ W s of signals of all runs, in units of the scales.

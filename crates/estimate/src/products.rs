@@ -66,8 +66,31 @@ pub(crate) fn inner_products(
     weights: &[f64],
     is_wanted: impl Fn(usize, usize) -> bool,
 ) -> Mat<f64> {
+    let mut all = Mat::zeros(left.len(), right.len());
+    for (c, weight) in weights.iter().enumerate() {
+        add_scaled(&mut all, *weight, &products_of(left, right, c, &is_wanted));
+    }
+    all
+}
+
+pub(crate) fn add_scaled(sum: &mut Mat<f64>, factor: f64, other: &Mat<f64>) {
+    for j in 0..sum.ncols() {
+        for i in 0..sum.nrows() {
+            sum[(i, j)] += factor * other[(i, j)];
+        }
+    }
+}
+
+/// Inner products of one channel of each set of signals on the left with that of each on the right, where wanted; zero elsewhere.
+pub(crate) fn products_of(
+    left: &[&Signals],
+    right: &[&Signals],
+    channel: usize,
+    is_wanted: impl Fn(usize, usize) -> bool,
+) -> Mat<f64> {
     let mut products = Mat::zeros(left.len(), right.len());
-    let lengths = left.iter().chain(right).copied().flatten().map(Vec::len);
+    let of_channel = |all: &[&'_ Signals]| all.iter().map(|s| s[channel].len()).min();
+    let lengths = of_channel(left).into_iter().chain(of_channel(right));
     let len = lengths.min().unwrap_or(0);
     let cells = |(i, j): (usize, usize)| {
         let rows = i..(i + ROWS).min(left.len());
@@ -82,7 +105,7 @@ pub(crate) fn inner_products(
         Arch::new().dispatch(Block {
             left,
             right,
-            weights,
+            channel,
             corners: &corners,
             samples: [block * BLOCK, ((block + 1) * BLOCK).min(len)],
         })
@@ -99,11 +122,11 @@ pub(crate) fn inner_products(
     products
 }
 
-/// The tiles with these corners, over some samples.
+/// The tiles with these corners, over some samples of a channel.
 struct Block<'a> {
     left: &'a [&'a Signals],
     right: &'a [&'a Signals],
-    weights: &'a [f64],
+    channel: usize,
     corners: &'a [(usize, usize)],
     samples: [usize; 2],
 }
@@ -113,22 +136,17 @@ impl WithSimd for Block<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Vec<Tile> {
-        let [from, to] = self.samples;
+        let ([from, to], c) = (self.samples, self.channel);
         let mut tiles = Vec::with_capacity(self.corners.len());
         for &(i, j) in self.corners {
-            let mut tile = Tile::default();
-            for (c, weight) in self.weights.iter().enumerate() {
-                // Beyond the last signal it is taken again, and its products are not looked at.
-                let left = |r: usize| &self.left[(i + r).min(self.left.len() - 1)][c][from..to];
-                let right = |r: usize| &self.right[(j + r).min(self.right.len() - 1)][c][from..to];
-                let of_channel = dots(simd, std::array::from_fn(left), std::array::from_fn(right));
-                for (sums, dots) in tile.iter_mut().zip(of_channel) {
-                    for (sum, dot) in sums.iter_mut().zip(dots) {
-                        *sum += weight * dot;
-                    }
-                }
-            }
-            tiles.push(tile);
+            // Beyond the last signal it is taken again, and its products are not looked at.
+            let left = |r: usize| &self.left[(i + r).min(self.left.len() - 1)][c][from..to];
+            let right = |r: usize| &self.right[(j + r).min(self.right.len() - 1)][c][from..to];
+            tiles.push(dots(
+                simd,
+                std::array::from_fn(left),
+                std::array::from_fn(right),
+            ));
         }
         tiles
     }
@@ -212,7 +230,7 @@ mod tests {
             arch.dispatch(Block {
                 left: &left,
                 right: &right,
-                weights: &[1.0, 3.0],
+                channel: 1,
                 corners: &[(0, 0)],
                 samples: [0, 301],
             })

@@ -20,6 +20,7 @@
 use faer::Mat;
 use simgap_simulate::LANES;
 
+use crate::gram::{Gram, grams};
 use crate::layout::Layout;
 use crate::linearise::{Linearised, Probe, discrepancies_of, probe, reach};
 use crate::merit::Merit;
@@ -47,7 +48,7 @@ pub(crate) struct Next {
 /// J near a point, J − gᵀδ + ½ δᵀ H δ of a step δ.
 pub(crate) struct Quadratic {
     weights: Vec<f64>,
-    hessian: Mat<f64>,
+    pub(crate) hessian: Mat<f64>,
     gradient: Vec<f64>,
     /// Entries that are not held at a bound.
     free: Vec<usize>,
@@ -100,15 +101,23 @@ impl Quadratic {
 pub(crate) struct Line<'a> {
     pub(crate) layout: &'a Layout,
     pub(crate) merit: &'a Merit<'a>,
+    /// Products of sensitivities that are known before, run by run.
+    pub(crate) known: &'a [Gram],
 }
 
 impl Line<'_> {
-    /// J about a point.
-    pub(crate) fn quadratic(&self, theta: &[f64], at: &Linearised) -> Quadratic {
+    /// J about a point. `last` are the products of the sensitivities of the point before, and of this one afterwards.
+    pub(crate) fn quadratic(
+        &self,
+        theta: &[f64],
+        at: &Linearised,
+        last: &mut Vec<Gram>,
+    ) -> Quadratic {
         let layout = self.layout;
         let (_, variance) = self.merit.of(layout, theta, &at.discrepancy);
         let weights = self.merit.weights(&variance);
-        let (hessian, gradient) = normal_equations(layout, theta, at, &weights);
+        *last = grams(&at.columns, weights.len(), [last, self.known]);
+        let (hessian, gradient) = normal_equations(layout, theta, at, last, &weights);
         let is_free = |i: &usize| {
             let outward = (theta[*i] <= layout.lower[*i] && gradient[*i] < 0.0)
                 || (theta[*i] >= layout.upper[*i] && gradient[*i] > 0.0);
