@@ -1,6 +1,7 @@
 //! Exact first-order-hold propagation of the linear part with nonlinear forces on top.
 
 mod columns;
+mod dry;
 pub mod elementary;
 mod expm;
 mod kernel;

@@ -2,6 +2,7 @@
 
 use simgap_model::Node;
 
+use super::dry::dry_force;
 use super::kernel::Kernel;
 use super::law::{Element, MemberMotion};
 use super::members::Together;
@@ -328,89 +329,6 @@ impl<'a> Plant<'a> {
             kernel.push_held(net, next);
         }
     }
-}
-
-/// The dry force over a step.
-#[derive(Clone, Copy)]
-pub(super) struct Dry {
-    /// Its mean, which moves the plant.
-    pub(super) mean: f64,
-    /// Its value at the end of the step.
-    pub(super) end: f64,
-}
-
-/// (4): the dry force over a step that starts at the velocity `start` and would end at `free`
-/// without it, when a unit of its mean changes that by −`compliance`.
-///
-/// With nearly constant acceleration over the step, a sliding member that comes to rest does so
-/// after the share θ of the step and then either stays or slides on:
-///
-/// ```text
-/// v₁ = v* − G F(½ (|v₀| + |v₁|)) sgn v₀                              while it slides one way
-/// v_A = v* − G F(½ |v₀|) sgn v₀,   θ = v₀ / (v₀ − v_A)
-/// mean = (θ F(½ |v₀|) − (1 − θ) F(½ |v_A|)) sgn v₀  when the other forces exceed the friction at rest, else v* / G
-/// ```
-///
-/// The mean over a step in which the speed changes is that at the mean speed, of second order in the step.
-///
-/// A motion that is prescribed does not mind the force; where it pauses, the force stays what it was
-/// `before`, up to what friction can hold.
-///
-/// `level` is the friction at a speed. Every case is computed and one chosen, so that the lanes of
-/// [`super::lanes`] can take different ones.
-#[inline(always)]
-pub(super) fn dry_force(
-    level: impl Fn(f64) -> f64,
-    before: f64,
-    start: f64,
-    free: f64,
-    compliance: f64,
-) -> Dry {
-    let level = |speed: f64| level(speed).max(0.0);
-    let sign = |velocity: f64| choose(velocity == 0.0, 0.0, 1.0_f64.copysign(velocity));
-    let at_rest = level(0.0);
-    let holds = compliance * at_rest;
-    let rests = start == 0.0;
-    let stuck = free / compliance;
-    // Sliding one way: |v₁| = s v* − G F(½ |v₀| + ½ |v₁|), by fixed-point iteration (levels change little in a
-    // step).
-    let way = sign(choose(rests, free, start));
-    let mean_level = |speed: f64| level(0.5 * (start.abs() + speed));
-    let mut speed = way * free;
-    for _ in 0..3 {
-        speed = (way * free - compliance * mean_level(speed.max(0.0))).max(0.0);
-    }
-    let slid = way * mean_level(speed);
-    let ahead = free - compliance * slid;
-    // A sliding member that turns: what stopped holds against the other forces, and the mean also
-    // brakes what was moving; or it slides on the other way.
-    let share = start / (start - ahead);
-    let turned = share * slid - (1.0 - share) * way * level(0.5 * ahead.abs());
-    let turned_end = -way * level((free - compliance * turned).abs());
-    let pauses = before.max(-at_rest).min(at_rest);
-    let carried = choose(free == 0.0, pauses, level(free.abs()) * sign(free));
-
-    let prescribed = compliance <= 0.0;
-    let slides = choose_if(rests, free.abs() > holds, ahead * way >= 0.0);
-    let stops = rests | ((free - start).abs() <= holds);
-    let mean = choose(slides, slid, choose(stops, stuck, turned));
-    let stopped_end = choose(rests, stuck, (free - start) / compliance);
-    let slid_end = way * level(speed);
-    let end = choose(slides, slid_end, choose(stops, stopped_end, turned_end));
-    Dry {
-        mean: choose(prescribed, carried, mean),
-        end: choose(prescribed, carried, end),
-    }
-}
-
-#[inline(always)]
-fn choose(condition: bool, yes: f64, no: f64) -> f64 {
-    if condition { yes } else { no }
-}
-
-#[inline(always)]
-fn choose_if(condition: bool, yes: bool, no: bool) -> bool {
-    (condition & yes) | (!condition & no)
 }
 
 /// (3): solves S = φ(S) from a first guess by the secant method.
