@@ -200,8 +200,8 @@ pub trait Effect: Sync + Send {
         &[]
     }
 
-    /// Kinds at the same place that this one turns into where its dynamics are out of sight, and which
-    /// are found in its stead as long as a fit does not start near them.
+    /// Kinds at the same place that this one turns into where its dynamics are out of sight, or the motion does not reach where it
+    /// yields: each is found in the other's stead as long as a fit does not start near the right one.
     fn turns_into(&self) -> &'static [&'static str] {
         &[]
     }
@@ -222,8 +222,9 @@ pub trait Effect: Sync + Send {
         vec![]
     }
 
-    /// Values of a special case ([`Effect::contains`]), by its kind, at which it acts as these values do or comes nearest; `None` for
-    /// the first of them. Those of a wrong nominal value are meant from the model as given.
+    /// Values of a special case ([`Effect::contains`]) or of what the effect turns into ([`Effect::turns_into`]), by its kind, at
+    /// which it acts as these values do or comes nearest; `None` for the first of them in a special case, and for none otherwise. Those
+    /// of a wrong nominal value are meant from the model as given.
     fn shrunk_to(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Option<Vec<f64>> {
         let _ = (kind, values, scale);
         None

@@ -407,17 +407,51 @@ fn verify_what_dynamics_turn_into_lets_them_grow_at_the_same_place() {
             let limit = simgap_effects::find(limit).unwrap_or_else(|| panic!("{pair}"));
             let at = sites(&model, effect.site());
             let places = sites(&model, limit.site());
-            assert!(at.iter().all(|at| places.contains(at)), "{pair}");
-            // One of a smaller and a larger value is in reach, the other is not.
-            let grown =
-                [0.8, 1.25].map(|factor| effect.grown_from(limit.kind(), &[factor], &scale()));
+            let (few, many) = match at.len() <= places.len() {
+                true => (&at, &places),
+                false => (&places, &at),
+            };
+            assert!(few.iter().all(|at| many.contains(at)), "{pair}");
+            // Some values are in reach, others are not: a smaller or a larger factor, a negative stiffness.
+            let values = [-1.25, 0.8, 1.25];
+            let grown = values.map(|value| effect.grown_from(limit.kind(), &[value], &scale()));
             assert!(grown.iter().any(Vec::is_empty), "{pair}");
+            assert!(grown.iter().any(|grown| !grown.is_empty()), "{pair}");
             for values in grown.concat() {
                 let mut physical = values.clone();
                 effect.make_physical(&mut physical);
                 assert_eq!(physical, values, "{pair}");
                 count += 1;
             }
+        }
+    }
+    assert!(count > 0);
+}
+
+/// Far below where it yields, a law that yields carries what the spring carries that it turns into.
+#[test]
+fn verify_a_law_that_yields_turns_into_a_spring() {
+    let mut count = 0;
+    for effect in catalogue() {
+        if !effect.turns_into().contains(&"linear_stiffness") {
+            continue;
+        }
+        for mut values in effect.starts(&scale()) {
+            // A thousand times further, and with it the friction it yields at; rates have died away.
+            values[1] *= 1e3;
+            let spring = effect.shrunk_to("linear_stiffness", &values, &scale());
+            let stiffness = spring.unwrap()[0];
+            let Action::Force(law) = effect.action(&values) else {
+                panic!("{} is no force", effect.kind());
+            };
+            let to = MemberMotion {
+                displacement: 0.1 * scale().displacement_m,
+                ..MemberMotion::default()
+            };
+            let carried = law.follow(law.first_memory(), MemberMotion::default(), to);
+            let share = carried.force / (stiffness * to.displacement);
+            assert!((share - 1.0).abs() < 0.01, "{}: {share}", effect.kind());
+            count += 1;
         }
     }
     assert!(count > 0);

@@ -151,6 +151,18 @@ impl ForceLaw for Law {
     }
 }
 
+/// Springs that yield within the motion and beyond it, of a stiffness that may follow from where.
+fn starts(stiffness: impl Fn(f64) -> f64, scale: &SiteScale) -> Vec<Vec<f64>> {
+    let mut starts = vec![];
+    for share in [0.1, 0.4, 1.2] {
+        let yields_at = share * scale.displacement_m;
+        for exponent in [1.0, 2.0] {
+            starts.push(vec![stiffness(yields_at), yields_at, 0.5, exponent, 0.0]);
+        }
+    }
+    starts
+}
+
 impl Effect for Hysteresis {
     fn kind(&self) -> &'static str {
         "hysteresis"
@@ -189,20 +201,23 @@ impl Effect for Hysteresis {
     }
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let mut starts = vec![];
-        for share in [0.1, 0.4, 1.2] {
-            let yields_at = share * scale.displacement_m;
-            for exponent in [1.0, 2.0] {
-                starts.push(vec![
-                    0.1 * scale.force_n / yields_at,
-                    yields_at,
-                    0.5,
-                    exponent,
-                    0.0,
-                ]);
-            }
+        starts(|yields_at| 0.1 * scale.force_n / yields_at, scale)
+    }
+
+    /// Short of the yield displacement it is a spring.
+    fn turns_into(&self) -> &'static [&'static str] {
+        &["linear_stiffness"]
+    }
+
+    fn grown_from(&self, _kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        match values[0] > 0.0 {
+            true => starts(|_| values[0], scale),
+            false => vec![],
         }
-        starts
+    }
+
+    fn shrunk_to(&self, _kind: &str, values: &[f64], _: &SiteScale) -> Option<Vec<f64>> {
+        Some(vec![values[0]])
     }
 
     fn action(&self, values: &[f64]) -> Action {

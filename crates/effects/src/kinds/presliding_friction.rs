@@ -78,9 +78,11 @@ impl ForceLaw for Law {
     }
 }
 
-fn starts(friction: f64, scale: &SiteScale) -> Vec<Vec<f64>> {
+/// Of a friction that may follow from the presliding displacement.
+fn starts(friction: impl Fn(f64) -> f64, scale: &SiteScale) -> Vec<Vec<f64>> {
     let start = |share: f64| {
         let displacement = share * scale.displacement_m;
+        let friction = friction(displacement);
         let damping_time = 2.0 * DAMPING * (scale.mass_kg * displacement / friction).sqrt();
         // A place without a mass has the time scale of its motion.
         let of_motion = DAMPING * scale.displacement_m / scale.velocity_m_per_s;
@@ -128,15 +130,28 @@ impl Effect for PreslidingFriction {
     }
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        starts(0.1 * scale.force_n, scale)
+        starts(|_| 0.1 * scale.force_n, scale)
     }
 
     fn contains(&self) -> &'static [&'static str] {
         &["coulomb_friction"]
     }
 
-    fn grown_from(&self, _kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
-        starts(values[0], scale)
+    /// Short of the presliding displacement it is a spring.
+    fn turns_into(&self) -> &'static [&'static str] {
+        &["linear_stiffness"]
+    }
+
+    fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        match kind {
+            "coulomb_friction" => starts(|_| values[0], scale),
+            _ if values[0] > 0.0 => starts(|displacement| values[0] * displacement, scale),
+            _ => vec![],
+        }
+    }
+
+    fn shrunk_to(&self, kind: &str, values: &[f64], _: &SiteScale) -> Option<Vec<f64>> {
+        (kind == "linear_stiffness").then(|| vec![values[0] / values[1]])
     }
 
     fn left_out(&self, parameter: &str) -> Option<f64> {

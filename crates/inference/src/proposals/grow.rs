@@ -31,19 +31,23 @@ impl Search<'_> {
         Ok(self.fit_all(&starts, &linear))
     }
 
-    /// The sets in which one effect has shrunk to a special case it contains.
+    /// The sets in which one effect has shrunk to a special case it contains, or has turned into what it is, where its dynamics are out of sight.
     pub(crate) fn shrink(&self, base: &CandidateModel, index: usize) -> Vec<CandidateModel> {
         let old = &base.effects()[index];
-        let special = self.space.candidates.iter().filter(|(candidate, _)| {
-            candidate.at == old.at && old.effect.contains().contains(&candidate.effect.kind())
-        });
-        let starts: Vec<Start> = special
+        let at_place = self.space.candidates.iter();
+        let at_place = at_place.filter(|(candidate, _)| candidate.at == old.at);
+        let starts: Vec<Start> = at_place
             .filter_map(|(candidate, scale)| {
                 let kind = candidate.effect.kind();
+                let is_special = old.effect.contains().contains(&kind);
+                if !is_special && !old.effect.turns_into().contains(&kind) {
+                    return None;
+                }
                 let values = old.effect.shrunk_to(kind, &old.values, scale);
                 let values = values.or_else(|| {
                     // The first values of a larger effect are those of its special case.
-                    let mut values = candidate.effect.starts(scale).into_iter().next()?;
+                    let starts = is_special.then(|| candidate.effect.starts(scale))?;
+                    let mut values = starts.into_iter().next()?;
                     values
                         .iter_mut()
                         .zip(&old.values)
