@@ -45,6 +45,6 @@ pub struct Named {
     pub probability: f64,
     /// What the answer says cannot be told from it.
     pub indistinguishable: Vec<(String, Location)>,
-    /// The answer says that it only stands in for a law that the catalogue does not have.
-    pub stand_in: bool,
+    /// The answer says that it leaves more than noise of the check records.
+    pub is_incomplete: bool,
 }

@@ -48,26 +48,24 @@ pub(crate) fn of_clean(truth: &Truth, status: Status, named: &[Named]) -> Verdic
     }
 }
 
-/// A stand-in predicts the check records to this share of the gap.
-const STANDS_IN: f64 = 0.03;
+/// An answer under which the same law goes by another name predicts the check records to this share of the gap.
+const PREDICTS: f64 = 0.03;
 
 /// A foreign effect, or one whose kind was out of the catalogue. `closed` is the share of the gap
 /// that the answer really closes.
 pub(crate) fn of_foreign(truth: &Truth, status: Status, named: &[&Named], closed: f64) -> Verdict {
     let first = truth.effects.first();
-    let stands = |named: &&&Named| {
+    let is_near = |named: &&&Named| {
         let family = |kind: &str| known(kind).map(|effect| effect.family());
-        named.stand_in && first.is_some_and(|e| family(&e.kind) == family(&named.kind))
+        named.is_incomplete && first.is_some_and(|e| family(&e.kind) == family(&named.kind))
     };
-    let is_same = |named: &&&Named| first.is_some_and(|e| is_same_law(truth, e, named));
-    let all = |right: &dyn Fn(&&&Named) -> bool| named.iter().all(|n| right(&n));
-    let predicts = closed >= 1.0 - STANDS_IN;
+    let is_same = |named: &&Named| first.is_some_and(|e| is_same_law(truth, e, named));
+    let predicts = closed >= 1.0 - PREDICTS;
     let outcome = match status {
         Status::Unknown => Outcome::HonestUnknown,
         Status::None => Outcome::Missed,
-        _ if named.is_empty() || !predicts => Outcome::Wrong,
-        _ if all(&|n| is_same(n)) => Outcome::Equivalent,
-        _ if all(&|n| is_same(n) || stands(n)) => Outcome::StandIn,
+        _ if !named.is_empty() && predicts && named.iter().all(is_same) => Outcome::Equivalent,
+        _ if named.first().is_some_and(|first| is_near(&first)) => Outcome::Nearest,
         _ => Outcome::Wrong,
     };
     Verdict {

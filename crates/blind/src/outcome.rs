@@ -13,9 +13,8 @@ pub enum Outcome {
     Quiet,
     /// Not in the catalogue, and said to be unknown.
     HonestUnknown,
-    /// Not in the catalogue, and one of its family is named, which predicts the check records and is
-    /// said to be a stand-in.
-    StandIn,
+    /// Not in the catalogue, and one of its family is named first in an answer that says that it is not complete.
+    Nearest,
     /// Among what the answer says cannot be told from a named effect.
     AmongRivals,
     /// Right kind, wrong place.
@@ -39,7 +38,7 @@ impl Outcome {
             Outcome::Equivalent => "equivalent",
             Outcome::Quiet => "quiet",
             Outcome::HonestUnknown => "honest unknown",
-            Outcome::StandIn => "stand-in",
+            Outcome::Nearest => "nearest name",
             Outcome::AmongRivals => "among rivals",
             Outcome::WrongPlace => "wrong place",
             Outcome::CalledUnknown => "called unknown",
@@ -58,7 +57,7 @@ impl Outcome {
                 | Outcome::Equivalent
                 | Outcome::Quiet
                 | Outcome::HonestUnknown
-                | Outcome::StandIn
+                | Outcome::Nearest
         )
     }
 }

@@ -123,7 +123,7 @@ pub struct Totals {
     /// A kind out of the catalogue that is said to be unknown, stood in for, or named by another
     /// name of the same law.
     pub withheld: Share,
-    /// Of both: honestly unknown, stand-in, the same law by another name.
+    /// Of both: honestly unknown, the nearest name of an incomplete answer, the same law by another name.
     pub foreign_how: [usize; 3],
     /// Two effects: both named at their places, none invented.
     pub pairs: Share,
@@ -193,7 +193,7 @@ impl Totals {
             withheld: Share::count(of_role(Role::Withheld).map(Score::is_right)),
             foreign_how: [
                 how(Outcome::HonestUnknown),
-                how(Outcome::StandIn),
+                how(Outcome::Nearest),
                 how(Outcome::Equivalent),
             ],
             pairs: Share::count(of_role(Role::Pair).map(Score::is_right)),

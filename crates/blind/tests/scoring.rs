@@ -62,7 +62,7 @@ fn named(kind: &str, at: Location, probability: f64) -> Named {
         at,
         probability,
         indistinguishable: vec![],
-        stand_in: false,
+        is_incomplete: false,
     }
 }
 
@@ -185,11 +185,14 @@ fn brake() -> Truth {
 }
 
 #[test]
-fn verify_a_foreign_effect_is_unknown_or_stood_in_for() {
+fn verify_a_foreign_effect_is_unknown_or_has_the_nearest_name_of_an_incomplete_answer() {
     let foreign = brake();
-    let said = |kind: &str, at, stand_in| {
+    let said = |kind: &str, at, is_incomplete| {
         let named = named(kind, at, 0.5);
-        vec![Named { stand_in, ..named }]
+        vec![Named {
+            is_incomplete,
+            ..named
+        }]
     };
     let member = || between("m1", "ground");
     assert_eq!(
@@ -198,10 +201,10 @@ fn verify_a_foreign_effect_is_unknown_or_stood_in_for() {
     );
     assert_eq!(outcome(&foreign, Status::None, vec![]), Outcome::Missed);
     let mut good = answer(Status::Effect, said("stribeck_friction", member(), true));
-    good.corrected = off_by(0.02 * NOMINAL_GAP);
-    assert_eq!(score(&foreign, &good).outcome(), Outcome::StandIn);
+    good.corrected = off_by(0.2 * NOMINAL_GAP);
+    assert_eq!(score(&foreign, &good).outcome(), Outcome::Nearest);
     assert!(score(&foreign, &good).is_right());
-    // Without saying so; of another family; not as good as that.
+    // Said to be complete; of another family.
     let wrong = [
         Answer {
             named: said("stribeck_friction", member(), false),
@@ -209,10 +212,6 @@ fn verify_a_foreign_effect_is_unknown_or_stood_in_for() {
         },
         Answer {
             named: said("sensor_lag", Location::Channel("y1".into()), true),
-            ..good.clone()
-        },
-        Answer {
-            corrected: off_by(0.04 * NOMINAL_GAP),
             ..good.clone()
         },
     ];
@@ -245,9 +244,9 @@ fn verify_a_withheld_kind_may_go_by_another_name_of_the_same_law() {
     );
 }
 
-/// An input gain that is not looked for, imitated by parameters that are off a little besides: they stand in, and say so.
+/// An input gain that is not looked for, imitated by parameters that are off a little besides: an answer that says that more is left.
 #[test]
-fn verify_parameters_that_are_off_besides_may_stand_in() {
+fn verify_parameters_that_are_off_besides_may_be_the_nearest_name() {
     let member = || between("m1", "ground");
     let gain = entry("input_gain", Location::Input("u".into()));
     let mut truth = case(Status::Effect, vec![gain]).with_kind_withheld();
@@ -256,13 +255,13 @@ fn verify_parameters_that_are_off_besides_may_stand_in() {
     let mut told = answer(
         Status::Parameters,
         vec![Named {
-            stand_in: true,
+            is_incomplete: true,
             ..stiffness
         }],
     );
     told.corrected = off_by(0.01 * NOMINAL_GAP);
-    assert_eq!(score(&truth, &told).outcome(), Outcome::StandIn);
-    told.named[0].stand_in = false;
+    assert_eq!(score(&truth, &told).outcome(), Outcome::Nearest);
+    told.named[0].is_incomplete = false;
     assert_eq!(score(&truth, &told).outcome(), Outcome::Wrong);
 }
 

@@ -16,7 +16,7 @@ use crate::multi_step;
 use crate::place::place_of;
 use crate::spread::spread_of_check;
 
-/// What is left of the gap, rms, from which an answer is incomplete.
+/// What is left of what the answer has to explain, rms, from which it is incomplete.
 const INCOMPLETE: f64 = 0.05;
 
 /// The check records.
@@ -99,8 +99,8 @@ impl<'a> Check<'a> {
         };
         let of_simulation = self.accuracy(placed, &predictions[2])?;
         let left_of_channels = left_of_channels(&gap, spread, &of_simulation);
-        let nominal = total(&gap.channels.iter().map(|c| c.nominal).collect::<Vec<_>>());
-        let left = total(&left_of_channels) / nominal.max(f64::MIN_POSITIVE);
+        let left = total(&left_of_channels);
+        let nominal = gap.nominal.max(f64::MIN_POSITIVE);
         let is_worse = gap.corrected > gap.recalibrated.max(gap.noise_floor)
             && gap.corrected > gap.nominal.min(gap.recalibrated) * NOISE_KNOWN;
         // What is named beside parameters closes some of what these leave, where a check record can show it.
@@ -108,7 +108,12 @@ impl<'a> Check<'a> {
             true => 0.0,
             false => RELEVANT_SHARE,
         };
-        let is_complete = left <= INCOMPLETE;
+        // Such names are to explain what no parameters do.
+        let to_explain = match share > 0.0 {
+            true => nominal.min(gap.recalibrated),
+            false => nominal,
+        };
+        let is_complete = left <= INCOMPLETE * to_explain;
         let is_tested =
             closed_if_true(&self.problem.output_std(), &predictions[1], &predictions[2]) >= share;
         let is_idle = share > 0.0 && is_tested && gap.corrected > (1.0 - share) * gap.recalibrated;
@@ -144,7 +149,7 @@ impl<'a> Check<'a> {
         }
         Ok(Checked {
             is_complete,
-            left: left.min(1.0),
+            left: (left / nominal).min(1.0),
             left_of_channels,
             is_refuted,
             paths: vec![self.paths(&predictions[2])],

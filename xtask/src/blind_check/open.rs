@@ -133,7 +133,7 @@ fn named(effect: &Value, is_complete: bool) -> Option<Named> {
         at,
         probability: effect["probability"].as_f64().unwrap_or(0.0),
         indistinguishable: rivals.into_iter().flatten().filter_map(kind_at).collect(),
-        stand_in: !is_complete,
+        is_incomplete: !is_complete,
     })
 }
 

@@ -164,7 +164,11 @@ pub(super) fn detail(
             named.kind,
             named.at,
             named.probability,
-            if named.stand_in { " stand-in" } else { "" },
+            if named.is_incomplete {
+                " incomplete"
+            } else {
+                ""
+            },
             rivals.join(", ")
         );
     }
