@@ -6,7 +6,7 @@ use crate::accept::accepted;
 use crate::bench::{Bench, draw_setup, shapes_for};
 use crate::chain::Noise;
 use crate::draft::Draft;
-use crate::effect::Effect;
+use crate::effect::{Effect, FLIPPED};
 use crate::families::{FAMILIES, draw_plant};
 use crate::plan::{Filter, Role, Wanted, wanted, wanted_instead};
 use crate::plant::Plant;
@@ -194,19 +194,24 @@ fn named(draft: &Draft, all: &[Effect], e: &Effect, twins: bool) -> Named {
         parameters.insert("phase_rad".into(), json!(e.phases));
     }
     Named {
-        kind: e.kind.to_owned(),
+        kind: contract_kind(e).to_owned(),
         at: plant.place_json(e.at),
         parameters,
         accept: accept.iter().map(twin).collect(),
     }
 }
 
+/// The kind by which the contract knows an effect: an input that was recorded with the other sign has a gain of -1.
+fn contract_kind(e: &Effect) -> &'static str {
+    match e.kind {
+        FLIPPED => "input_gain",
+        kind => kind,
+    }
+}
+
 fn truth(draft: &Draft, wanted: &Wanted, name: &str, noise: TruthNoise) -> Truth {
-    let catalogued = |e: &&Effect| {
-        !e.kind.starts_with("foreign_")
-            && e.kind != "sensor_not_connected"
-            && !e.kind.starts_with("slip_")
-    };
+    let catalogued =
+        |e: &&Effect| !e.kind.starts_with("foreign_") && e.kind != "sensor_not_connected";
     let all: Vec<Effect> = draft.effects.iter().chain(&draft.wrong).cloned().collect();
     let known: Vec<&Effect> = all.iter().filter(catalogued).collect();
     let status = match (wanted.role, known.len() == all.len()) {
@@ -214,10 +219,13 @@ fn truth(draft: &Draft, wanted: &Wanted, name: &str, noise: TruthNoise) -> Truth
         (_, false) => "unknown",
         (Role::Clean, _) => "none",
         (Role::Parameters, _) => "parameters",
-        (_, true) if known.iter().all(|e| e.kind == "input_gain") => "parameters",
+        (_, true) if known.iter().all(|e| contract_kind(e) == "input_gain") => "parameters",
         _ => "effect",
     };
-    let effects = known.iter().map(|e| named(draft, &all, e, true)).collect();
+    let effects = known
+        .iter()
+        .map(|e| named(draft, &all, e, e.kind != FLIPPED))
+        .collect();
     let foreign = all.iter().filter(|e| !catalogued(e));
     let setups = draft.bench.setups.iter();
     Truth {

@@ -2,7 +2,7 @@
 
 use crate::deviate::apply;
 use crate::draft::Draft;
-use crate::effect::Effect;
+use crate::effect::{Effect, FLIPPED};
 use crate::kinds::{PARAMETERS, group};
 use crate::plan::{Role, Wanted};
 use crate::plant::{Place, Quantity, Unit};
@@ -163,7 +163,7 @@ fn slip(mut draft: Draft, kind: &'static str, rng: &mut Rng) -> Option<Draft> {
         },
         _ if plant.inputs.is_empty() => return None,
         "sign_input" if plant.outputs.len() == 1 => gain("sensor_gain", Place::Channel(0), -1.0),
-        "sign_input" => gain("slip_sign_input", Place::Input(0), -1.0),
+        "sign_input" => gain(FLIPPED, Place::Input(0), -1.0),
         _ => gain(
             "input_gain",
             Place::Input(0),

@@ -5,6 +5,9 @@ use crate::law::Law;
 use crate::machine::{Dry, LawAt, Machine};
 use crate::plant::{Node, Place, Plant, Quantity, same_pair};
 
+/// The slip of an input that was recorded with the other sign: the machine itself has no effect.
+pub(crate) const FLIPPED: &str = "slip_sign_input";
+
 /// An effect at its place.
 #[derive(Debug, Clone)]
 pub struct Effect {

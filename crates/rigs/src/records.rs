@@ -3,7 +3,7 @@
 use crate::bench::{Bench, deviation};
 use crate::chain::Noise;
 use crate::draft::Draft;
-use crate::effect::Effect;
+use crate::effect::{Effect, FLIPPED};
 use crate::march::KEPT;
 use crate::rng::Rng;
 
@@ -26,7 +26,7 @@ fn misrecorded(draft: &Draft, input: usize) -> f64 {
         _ => false,
     });
     let factor = |e: &Effect| match e.kind {
-        "slip_sign_input" => -1.0,
+        FLIPPED => -1.0,
         _ => 1.0,
     };
     slips.map(factor).product()
