@@ -118,9 +118,9 @@ pub struct Totals {
     pub exact: Share,
     /// Noise alone with small errors of the parameters, nothing blamed but parameters.
     pub small_errors: Share,
-    /// A foreign effect that is said to be unknown, or stood in for.
+    /// A foreign effect that is said to be unknown, or incompletely explained by one of its family.
     pub foreign: Share,
-    /// A kind out of the catalogue that is said to be unknown, stood in for, or named by another
+    /// A kind out of the catalogue that is said to be unknown, incompletely explained by one of its family, or named by another
     /// name of the same law.
     pub withheld: Share,
     /// Of both: honestly unknown, the nearest name of an incomplete answer, the same law by another name.

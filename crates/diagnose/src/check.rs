@@ -103,15 +103,10 @@ impl<'a> Check<'a> {
         let nominal = gap.nominal.max(f64::MIN_POSITIVE);
         let is_worse = gap.corrected > gap.recalibrated.max(gap.noise_floor)
             && gap.corrected > gap.nominal.min(gap.recalibrated) * NOISE_KNOWN;
-        // What is named beside parameters closes some of what these leave, where a check record can show it.
-        let share = match placed.iter().all(simgap_inference::is_nominal) {
-            true => 0.0,
-            false => RELEVANT_SHARE,
-        };
-        // Such names are to explain what no parameters do.
-        let to_explain = match share > 0.0 {
-            true => nominal.min(gap.recalibrated),
-            false => nominal,
+        // What is named beside parameters is to explain what these leave, and closes some of that where a check record can show it.
+        let (share, to_explain) = match placed.iter().all(simgap_inference::is_nominal) {
+            true => (0.0, nominal),
+            false => (RELEVANT_SHARE, nominal.min(gap.recalibrated)),
         };
         let is_complete = left <= INCOMPLETE * to_explain;
         let is_tested =

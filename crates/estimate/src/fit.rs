@@ -14,8 +14,6 @@
 //!
 //! References: \[Ljung1999\], chapter 7; \[Nocedal2006\], section 10.3.
 
-use faer::Mat;
-
 use crate::curvature::Curvature;
 use crate::gram::Gram;
 use crate::layout::{Freedom, Layout};
@@ -23,7 +21,7 @@ use crate::linearise::{Column, Linearised, Probe, complete, probe};
 use crate::merit::Merit;
 use crate::normal::variances;
 use crate::signals::Signals;
-use crate::step::{LEAST_DAMPING, Line};
+use crate::step::{LEAST_DAMPING, Line, Quadratic};
 use crate::{EstimateError, FitOptions, Problem, Start};
 
 /// A parameter value with its 95 % interval.
@@ -174,18 +172,17 @@ pub(crate) fn fit_with(
         }
     }
     let last = search.quadratic(&theta, &at, &mut grams);
-    Ok(finish(&search, &theta, (at, &last.hessian), iterations))
+    Ok(finish(&search, (&theta, objective), (at, last), iterations))
 }
 
 fn finish(
     Line { layout, merit, .. }: &Line<'_>,
-    theta: &[f64],
-    (at, hessian): (Linearised, &Mat<f64>),
+    (theta, objective): (&[f64], f64),
+    (at, last): (Linearised, Quadratic),
     iterations: usize,
 ) -> Fit {
-    let (objective, variance) = merit.of(layout, theta, &at.discrepancy);
     let all: Vec<usize> = (0..layout.len()).collect();
-    let curvature = Curvature::of(layout, theta, hessian);
+    let curvature = Curvature::of(layout, theta, &last.hessian);
     let spread = variances(&curvature.with_fixed_priors(), &all);
     let misfit = objective - merit.prior(layout, theta);
     let estimate = layout.unpack(theta);
@@ -225,7 +222,7 @@ fn finish(
     Fit {
         estimate,
         objective,
-        variance,
+        variance: last.variance,
         intervals,
         nominal_intervals,
         misfit,

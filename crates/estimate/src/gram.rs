@@ -13,7 +13,6 @@ use crate::products::{add_scaled, products_of};
 use crate::signals::Signals;
 
 /// The inner products of the sensitivities of one run with each other.
-#[derive(Clone, Default)]
 pub(crate) struct Gram {
     columns: Vec<Column>,
     /// Channel by channel, below the diagonal and on it.

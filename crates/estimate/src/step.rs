@@ -46,7 +46,10 @@ pub(crate) struct Next {
 }
 
 /// J near a point, J − gᵀδ + ½ δᵀ H δ of a step δ.
+#[derive(Clone)]
 pub(crate) struct Quadratic {
+    /// V_c at the point, and the weights that follow.
+    pub(crate) variance: Vec<f64>,
     weights: Vec<f64>,
     pub(crate) hessian: Mat<f64>,
     gradient: Vec<f64>,
@@ -79,9 +82,7 @@ impl Quadratic {
         free.retain(|&i| !layout.is_limit[i]);
         (free.len() < self.free.len()).then(|| Quadratic {
             free,
-            weights: self.weights.clone(),
-            hessian: self.hessian.clone(),
-            gradient: self.gradient.clone(),
+            ..self.clone()
         })
     }
 
@@ -125,6 +126,7 @@ impl Line<'_> {
         };
         Quadratic {
             free: (0..layout.len()).filter(is_free).collect(),
+            variance,
             weights,
             hessian,
             gradient,

@@ -31,7 +31,7 @@ impl Search<'_> {
         Ok(self.fit_all(&starts, &linear))
     }
 
-    /// The sets in which one effect has shrunk to a special case it contains, or has turned into what it is, where its dynamics are out of sight.
+    /// The sets in which one effect has shrunk to a special case it contains, or to what it turns into.
     pub(crate) fn shrink(&self, base: &CandidateModel, index: usize) -> Vec<CandidateModel> {
         let old = &base.effects()[index];
         let at_place = self.space.candidates.iter();

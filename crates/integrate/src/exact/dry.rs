@@ -9,8 +9,8 @@ pub(super) struct Dry {
     pub(super) end: f64,
 }
 
-/// (4): the dry force over a step that starts at the velocity `start` and would end at `free`
-/// without it, when a unit of its mean changes that by −`compliance`.
+/// A step with dry friction, (4): it starts at the velocity `start` and would end at `free` without the friction, when a unit
+/// of its mean changes that by −`compliance`.
 ///
 /// With nearly constant acceleration over the step, a sliding member that comes to rest does so
 /// after the share θ of the step and then either stays or slides on:
@@ -25,96 +25,97 @@ pub(super) struct Dry {
 ///
 /// A motion that is prescribed does not mind the force; where it pauses, the force stays what it was
 /// `before`, up to what friction can hold.
-///
-/// `level` is the friction at a speed. Every case is computed and one chosen, so that the lanes of
-/// [`super::lanes`] can take different ones; before that, what slides all the way is asked for alone, as most steps are of that kind.
-#[inline(always)]
-pub(super) fn dry_force(
-    level: impl Fn(f64) -> f64,
-    before: f64,
-    start: f64,
-    free: f64,
-    compliance: f64,
-) -> Dry {
-    let slid = slid(&level, start, start, free, compliance);
-    match is_all_the_way(&slid, start, compliance) {
-        true => slid.dry,
-        false => dry_force_of_any(level, before, start, free, compliance),
-    }
+pub(super) struct DryStep {
+    pub(super) before: f64,
+    pub(super) start: f64,
+    pub(super) free: f64,
+    pub(super) compliance: f64,
 }
 
 /// The dry force over a step for a member that slides one way throughout it, if it does.
 pub(super) struct Slid {
     pub(super) dry: Dry,
-    /// Velocity at the end of the step, positive along the way.
+    /// Whether it does, and did before.
+    pub(super) is_all_the_way: bool,
+    /// Velocity at the end of the step.
     ahead: f64,
     way: f64,
 }
 
-/// Whether a member that is `start` fast at the start of the step slides all the way.
-#[inline(always)]
-pub(super) fn is_all_the_way(slid: &Slid, start: f64, compliance: f64) -> bool {
-    (compliance > 0.0) & (start != 0.0) & (slid.ahead * slid.way >= 0.0)
-}
-
-/// Sliding the way that `leads`: |v₁| = s v* − G F(½ |v₀| + ½ |v₁|), by fixed-point iteration (levels change little in a step).
-#[inline(always)]
-pub(super) fn slid(
-    level: impl Fn(f64) -> f64,
-    leads: f64,
-    start: f64,
-    free: f64,
-    compliance: f64,
-) -> Slid {
-    let level = |speed: f64| level(speed).max(0.0);
-    let way = sign(leads);
-    let mean_level = |speed: f64| level(0.5 * (start.abs() + speed));
-    let mut speed = way * free;
-    for _ in 0..3 {
-        speed = (way * free - compliance * mean_level(speed.max(0.0))).max(0.0);
+impl DryStep {
+    /// `level` is the friction at a speed. What slides all the way is asked for alone, as most steps are of that kind.
+    #[inline(always)]
+    pub(super) fn force(&self, level: impl Fn(f64) -> f64) -> Dry {
+        let slid = self.slid(&level);
+        match slid.is_all_the_way {
+            true => slid.dry,
+            false => self.force_of_any(level),
+        }
     }
-    let mean = way * mean_level(speed);
-    let end = way * level(speed);
-    Slid {
-        dry: Dry { mean, end },
-        ahead: free - compliance * mean,
-        way,
+
+    /// Sliding one way: |v₁| = s v* − G F(½ |v₀| + ½ |v₁|), by fixed-point iteration (levels change little in a step).
+    #[inline(always)]
+    pub(super) fn slid(&self, level: impl Fn(f64) -> f64) -> Slid {
+        let DryStep {
+            start,
+            free,
+            compliance,
+            ..
+        } = *self;
+        let level = |speed: f64| level(speed).max(0.0);
+        let rests = start == 0.0;
+        let way = sign(choose(rests, free, start));
+        let mean_level = |speed: f64| level(0.5 * (start.abs() + speed));
+        let mut speed = way * free;
+        for _ in 0..3 {
+            speed = (way * free - compliance * mean_level(speed.max(0.0))).max(0.0);
+        }
+        let mean = way * mean_level(speed);
+        let end = way * level(speed);
+        let ahead = free - compliance * mean;
+        Slid {
+            dry: Dry { mean, end },
+            is_all_the_way: (compliance > 0.0) & !rests & (ahead * way >= 0.0),
+            ahead,
+            way,
+        }
     }
-}
 
-/// The dry force over a step of any kind.
-#[inline(always)]
-pub(super) fn dry_force_of_any(
-    level: impl Fn(f64) -> f64,
-    before: f64,
-    start: f64,
-    free: f64,
-    compliance: f64,
-) -> Dry {
-    let rests = start == 0.0;
-    let slid = slid(&level, choose(rests, free, start), start, free, compliance);
-    let level = |speed: f64| level(speed).max(0.0);
-    let at_rest = level(0.0);
-    let holds = compliance * at_rest;
-    let stuck = free / compliance;
-    // A sliding member that turns: what stopped holds against the other forces, and the mean also
-    // brakes what was moving; or it slides on the other way.
-    let Slid { dry, ahead, way } = slid;
-    let share = start / (start - ahead);
-    let turned = share * dry.mean - (1.0 - share) * way * level(0.5 * ahead.abs());
-    let turned_end = -way * level((free - compliance * turned).abs());
-    let pauses = before.max(-at_rest).min(at_rest);
-    let carried = choose(free == 0.0, pauses, level(free.abs()) * sign(free));
+    /// In a step of any kind. Every case is computed and one chosen, so that the lanes of [`super::lanes`] can take different ones.
+    #[inline(always)]
+    pub(super) fn force_of_any(&self, level: impl Fn(f64) -> f64) -> Dry {
+        let Slid {
+            dry, ahead, way, ..
+        } = self.slid(&level);
+        let DryStep {
+            before,
+            start,
+            free,
+            compliance,
+        } = *self;
+        let level = |speed: f64| level(speed).max(0.0);
+        let at_rest = level(0.0);
+        let holds = compliance * at_rest;
+        let rests = start == 0.0;
+        let stuck = free / compliance;
+        // A sliding member that turns: what stopped holds against the other forces, and the mean also
+        // brakes what was moving; or it slides on the other way.
+        let share = start / (start - ahead);
+        let turned = share * dry.mean - (1.0 - share) * way * level(0.5 * ahead.abs());
+        let turned_end = -way * level((free - compliance * turned).abs());
+        let pauses = before.max(-at_rest).min(at_rest);
+        let carried = choose(free == 0.0, pauses, level(free.abs()) * sign(free));
 
-    let prescribed = compliance <= 0.0;
-    let slides = choose_if(rests, free.abs() > holds, ahead * way >= 0.0);
-    let stops = rests | ((free - start).abs() <= holds);
-    let mean = choose(slides, dry.mean, choose(stops, stuck, turned));
-    let stopped_end = choose(rests, stuck, (free - start) / compliance);
-    let end = choose(slides, dry.end, choose(stops, stopped_end, turned_end));
-    Dry {
-        mean: choose(prescribed, carried, mean),
-        end: choose(prescribed, carried, end),
+        let prescribed = compliance <= 0.0;
+        let slides = choose_if(rests, free.abs() > holds, ahead * way >= 0.0);
+        let stops = rests | ((free - start).abs() <= holds);
+        let mean = choose(slides, dry.mean, choose(stops, stuck, turned));
+        let stopped_end = choose(rests, stuck, (free - start) / compliance);
+        let end = choose(slides, dry.end, choose(stops, stopped_end, turned_end));
+        Dry {
+            mean: choose(prescribed, carried, mean),
+            end: choose(prescribed, carried, end),
+        }
     }
 }
 

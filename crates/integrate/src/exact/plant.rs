@@ -2,7 +2,7 @@
 
 use simgap_model::Node;
 
-use super::dry::dry_force;
+use super::dry::DryStep;
 use super::kernel::Kernel;
 use super::law::{Element, MemberMotion};
 use super::members::Together;
@@ -280,11 +280,13 @@ impl<'a> Plant<'a> {
         let (old_smooth, old_dry) = (self.smooth[i], self.dry_force[i]);
         if self.dry[i] {
             let free_velocity = velocity - c.velocity[own] * self.smooth[i];
-            let compliance = c.dry_velocity[own];
-            let start = self.start_velocity[i];
-            let level = |speed: f64| law.dry_level(speed).unwrap_or(0.0);
-            let before = self.dry_end[i];
-            let dry = dry_force(level, before, start, free_velocity, compliance);
+            let step = DryStep {
+                before: self.dry_end[i],
+                start: self.start_velocity[i],
+                free: free_velocity,
+                compliance: c.dry_velocity[own],
+            };
+            let dry = step.force(|speed| law.dry_level(speed).unwrap_or(0.0));
             (self.dry_force[i], self.dry_end[i]) = (dry.mean, dry.end);
             displacement -= c.dry_displacement[own] * self.dry_force[i];
             velocity -= c.dry_velocity[own] * self.dry_force[i];

@@ -1,6 +1,6 @@
 //! Equations (3) and (4) of [`crate::exact::march`] for one element of eight sets.
 //!
-//! Laws, and [`slid`] and [`dry_force_of_any`], which are those of the march of one set, are asked lane by lane, in loops that
+//! Laws, and [`DryStep`], which is that of the march of one set, are asked lane by lane, in loops that
 //! write down what they say and do nothing else: such loops become vector instructions. All other
 //! arithmetic is [`Wide`].
 
@@ -9,7 +9,7 @@ use pulp::Simd;
 use super::element::ElementLanes;
 use super::wide::{Which, Wide};
 use super::{LANES, Pack};
-use crate::exact::dry::{dry_force_of_any, is_all_the_way, slid};
+use crate::exact::dry::DryStep;
 use crate::exact::law::{Followed, MemberMotion, Tangent};
 use crate::exact::plant::{AT_REST, FORCE_TOLERANCE, SECANT_STEPS};
 
@@ -109,21 +109,24 @@ fn dry_forces<S: Simd>(
     let start = rests.choose(Wide::zero(simd), start).pack();
     let (free, compliance) = (free.pack(), element.dry_compliance[1]);
     let (mut mean, mut end) = (Pack::ZERO, Pack::ZERO);
+    let step = |l: usize| DryStep {
+        before: element.dry_end.0[l],
+        start: start.0[l],
+        free: free.0[l],
+        compliance: compliance.0[l],
+    };
     // Where all slide, no other case is computed.
     let mut is_done = !rests.any();
     if is_done {
         for l in 0..LANES {
-            let level = |speed: f64| laws.dry_level(l, speed);
-            let slid = slid(level, start.0[l], start.0[l], free.0[l], compliance.0[l]);
+            let slid = step(l).slid(|speed| laws.dry_level(l, speed));
             (mean.0[l], end.0[l]) = (slid.dry.mean, slid.dry.end);
-            is_done &= is_all_the_way(&slid, start.0[l], compliance.0[l]);
+            is_done &= slid.is_all_the_way;
         }
     }
     if !is_done {
         for l in 0..LANES {
-            let level = |speed: f64| laws.dry_level(l, speed);
-            let before = element.dry_end.0[l];
-            let now = dry_force_of_any(level, before, start.0[l], free.0[l], compliance.0[l]);
+            let now = step(l).force_of_any(|speed| laws.dry_level(l, speed));
             (mean.0[l], end.0[l]) = (now.mean, now.end);
         }
     }
