@@ -324,3 +324,50 @@ fn verify_two_elements_between_two_masses() {
     );
     assert!(last < 1.3, "friction has taken energy");
 }
+
+/// A spring, a damper and friction as one law.
+struct Together;
+impl ForceLaw for Together {
+    fn force(&self, at: MemberMotion) -> f64 {
+        stiffening(at) + braking(at)
+    }
+    fn dry_level(&self, _: f64) -> Option<f64> {
+        Some(1.5)
+    }
+}
+
+fn stiffening(at: MemberMotion) -> f64 {
+    2e4 * at.displacement.powi(3)
+}
+
+fn braking(at: MemberMotion) -> f64 {
+    3.0 * at.velocity * at.velocity.abs()
+}
+
+#[test]
+fn verify_laws_at_one_port_act_as_their_sum() {
+    let force: Vec<f64> = (0..600)
+        .map(|k| 6.0 * (0.03 * f64::from(k)).sin() + 3.0 * (0.017 * f64::from(k)).cos())
+        .collect();
+    let structure = one(1.0, 0.4, 200.0);
+    let path = |elements: &[Element]| march(&structure, elements, 0.01, 1, &force, [0.02, -0.3]);
+    let apart = path(
+        &[
+            to_ground(Law(stiffening)),
+            to_ground(Coulomb(1.5)),
+            to_ground(Law(braking)),
+        ]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>(),
+    );
+    let sum = path(&to_ground(Together));
+    let sticks = sum.windows(2).filter(|pair| pair[1][1].abs() < 1e-12);
+    assert!(sticks.count() > 20, "the friction never holds");
+    for k in 0..3 {
+        let size = sum.iter().fold(0.0_f64, |size, at| size.max(at[k].abs()));
+        let off = apart.iter().zip(&sum).map(|(a, b)| (a[k] - b[k]).abs());
+        let off = off.fold(0.0, f64::max) / size;
+        assert!(off < 1e-9, "quantity {k} is off by {off}");
+    }
+}

@@ -201,8 +201,22 @@ struct Set {
 
 const STEP_S: f64 = 0.02;
 
+/// Where laws stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Places {
+    Apart,
+    /// All between the first mass and the ground: one joint, or some.
+    AtOne,
+}
+
 /// A chain of `n` masses between moving bases and the ground, laws as the digits of `laws` say.
-fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], drive: &Rc<Drive>) -> Set {
+fn set(
+    n: usize,
+    (laws, places): (&[u8], Places),
+    substeps: usize,
+    numbers: &[f64],
+    drive: &Rc<Drive>,
+) -> Set {
     let number = |i: usize| numbers[i % numbers.len()];
     let chain = |value: f64| {
         faer::Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
@@ -224,6 +238,7 @@ fn set(n: usize, laws: &[u8], substeps: usize, numbers: &[f64], drive: &Rc<Drive
     };
     let elements = laws.iter().enumerate().map(|(i, kind)| {
         let (a, b) = match i % 3 {
+            _ if places == Places::AtOne => (Node::Dof(0), Node::Ground),
             0 => (Node::Dof(i % n), Node::Ground),
             1 if drive.bases > 0 => (Node::Dof(0), Node::Base(i % drive.bases)),
             _ => (Node::Dof(i % n), Node::Dof((i + 1) % n)),
@@ -366,7 +381,8 @@ proptest! {
     fn prop_lanes_are_the_sets_to_the_last_bit(
         n in 1_usize..8,
         bases in 0_usize..3,
-        laws in proptest::collection::vec(0_u8..9, 0..4),
+        laws in proptest::collection::vec(0_u8..9, 0..5),
+        places in prop_oneof![Just(Places::Apart), Just(Places::AtOne)],
         substeps in 1_usize..4,
         drives in proptest::collection::vec((-1.0_f64..1.0, 0_usize..60), 1..5),
         numbers in proptest::collection::vec(
@@ -378,7 +394,7 @@ proptest! {
             .collect();
         let sets: Vec<Set> = numbers
             .iter()
-            .map(|(numbers, k)| set(n, &laws, substeps, numbers, &drives[k % drives.len()]))
+            .map(|(numbers, k)| set(n, (&laws, places), substeps, numbers, &drives[k % drives.len()]))
             .collect();
         for (lanes, set) in together(&sets, substeps).iter().zip(&sets) {
             let alone = set.alone(substeps);
@@ -399,7 +415,7 @@ fn verify_laws_solved_together_are_those_solved_one_after_the_other() {
     for beside in [vec![], vec![0_u8], vec![1]] {
         let path = |kind: u8| {
             let laws = [vec![kind; 3], beside.clone()].concat();
-            set(5, &laws, 2, &numbers, &drive).alone(2)
+            set(5, (&laws, Places::Apart), 2, &numbers, &drive).alone(2)
         };
         let (one, other) = (path(7), path(8));
         let size = other
@@ -408,7 +424,7 @@ fn verify_laws_solved_together_are_those_solved_one_after_the_other() {
         let off = one.iter().zip(&other).map(|(a, b)| (a - b).abs());
         let off = off.fold(0.0, f64::max) / size;
         assert!(off < FORCES, "{off} beside {beside:?}");
-        let free = set(5, &beside, 2, &numbers, &drive).alone(2);
+        let free = set(5, (&beside, Places::Apart), 2, &numbers, &drive).alone(2);
         assert!(free.len() != one.len() && one.iter().all(|value| value.is_finite()));
     }
 }

@@ -7,6 +7,16 @@ pub(super) struct Dry {
     pub(super) mean: f64,
     /// Its value at the end of the step.
     pub(super) end: f64,
+    /// What a unit of the velocity that it holds against adds to both: 1/G where it holds, nothing where it slides.
+    pub(super) stiffness: f64,
+}
+
+impl Dry {
+    pub(super) const NONE: Dry = Dry {
+        mean: 0.0,
+        end: 0.0,
+        stiffness: 0.0,
+    };
 }
 
 /// A step with dry friction, (4): it starts at the velocity `start` and would end at `free` without the friction, when a unit
@@ -74,7 +84,11 @@ impl DryStep {
         let end = way * level(speed);
         let ahead = free - compliance * mean;
         Slid {
-            dry: Dry { mean, end },
+            dry: Dry {
+                mean,
+                end,
+                stiffness: 0.0,
+            },
             is_all_the_way: (compliance > 0.0) & !rests & (ahead * way >= 0.0),
             ahead,
             way,
@@ -95,7 +109,7 @@ impl DryStep {
         } = *self;
         let level = |speed: f64| level(speed).max(0.0);
         let at_rest = level(0.0);
-        let holds = compliance * at_rest;
+        let most = compliance * at_rest;
         let rests = start == 0.0;
         let stuck = free / compliance;
         // A sliding member that turns: what stopped holds against the other forces, and the mean also
@@ -107,14 +121,16 @@ impl DryStep {
         let carried = choose(free == 0.0, pauses, level(free.abs()) * sign(free));
 
         let prescribed = compliance <= 0.0;
-        let slides = choose_if(rests, free.abs() > holds, ahead * way >= 0.0);
-        let stops = rests | ((free - start).abs() <= holds);
+        let slides = choose_if(rests, free.abs() > most, ahead * way >= 0.0);
+        let stops = rests | ((free - start).abs() <= most);
         let mean = choose(slides, dry.mean, choose(stops, stuck, turned));
         let stopped_end = choose(rests, stuck, (free - start) / compliance);
         let end = choose(slides, dry.end, choose(stops, stopped_end, turned_end));
+        let holds = stops & !slides & !prescribed;
         Dry {
             mean: choose(prescribed, carried, mean),
             end: choose(prescribed, carried, end),
+            stiffness: choose(holds, 1.0 / compliance, 0.0),
         }
     }
 }

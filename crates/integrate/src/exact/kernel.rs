@@ -65,8 +65,22 @@ fn add_product<const N: usize>(block: &Block<N>, vector: &[f64; N], sum: &mut [f
     }
 }
 
+/// The product alone. A sum from zero would be one more addition to wait for.
+#[inline(always)]
+fn product<const N: usize>(block: &Block<N>, vector: &[f64; N]) -> [f64; N] {
+    let mut sum = [0.0; N];
+    for i in 0..N {
+        sum[i] = block[i][0] * vector[0];
+        for j in 1..N {
+            sum[i] += block[i][j] * vector[j];
+        }
+    }
+    sum
+}
+
 impl<const N: usize> Fixed<N> {
-    /// The step from a displacement and a velocity.
+    /// The step from a displacement and a velocity. What the forces, the displacements and the velocities bring is summed apart: a
+    /// step waits for the one before it, by as few additions as there can be.
     #[inline(always)]
     pub(super) fn next(
         &self,
@@ -74,14 +88,18 @@ impl<const N: usize> Fixed<N> {
         before: &[f64; N],
         after: &[f64; N],
     ) -> [[f64; N]; 2] {
-        std::array::from_fn(|half| {
-            let mut sum = [0.0; N];
-            add_product(&self.gamma0[half], before, &mut sum);
-            add_product(&self.gamma1[half], after, &mut sum);
-            add_product(&self.phi[half][0], x, &mut sum);
-            add_product(&self.phi[half][1], v, &mut sum);
-            sum
-        })
+        // A closure would not be inlined.
+        let mut next = [[0.0; N]; 2];
+        for half in 0..2 {
+            let mut forced = product(&self.gamma0[half], before);
+            add_product(&self.gamma1[half], after, &mut forced);
+            let of_x = product(&self.phi[half][0], x);
+            let of_v = product(&self.phi[half][1], v);
+            for i in 0..N {
+                next[half][i] = forced[i] + (of_x[i] + of_v[i]);
+            }
+        }
+        next
     }
 }
 
@@ -272,6 +290,8 @@ mod tests {
         compact.push_end(&f0, &mut b);
         fixed.push_held(&f1, &mut a);
         compact.push_held(&f1, &mut b);
-        assert_eq!(a, b);
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() <= 1e-15 * a.abs(), "{a} {b}");
+        }
     }
 }

@@ -207,9 +207,9 @@ impl Plant<'_> {
                 scratch.net.copy_from_slice(sample.force);
                 let steps = index * excitation.substeps.max(1);
                 let time_s = excitation.time_s(steps, self.propagator.time_step_s);
-                for (i, element) in self.elements.iter().enumerate() {
-                    carried[i] = self.carried(i, state, &scratch.base, time_s);
-                    spread(element, carried[i], &mut scratch.net);
+                self.carry(state, &scratch.base, time_s, &mut carried);
+                for (element, carried) in self.elements.iter().zip(&carried) {
+                    spread(element, *carried, &mut scratch.net);
                 }
                 scratch.net.as_slice()
             } else {
@@ -250,9 +250,7 @@ impl Plant<'_> {
             let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
             interpolate(from.force, to.force, start, &mut scratch.before);
             interpolate(from.force, to.force, end, &mut scratch.after);
-            for (element, &s) in self.elements.iter().zip(&self.smooth) {
-                spread(element, s, &mut scratch.before);
-            }
+            self.spread_smooth(&mut scratch.before);
             // (1) without S₁ and D₁
             kernel.step(state, &scratch.before, &scratch.after, &mut scratch.next);
             if !self.elements.is_empty() {

@@ -4,6 +4,7 @@ mod columns;
 mod dry;
 pub mod elementary;
 mod expm;
+mod joint;
 mod kernel;
 pub mod lanes;
 mod law;
@@ -11,6 +12,7 @@ mod march;
 mod members;
 mod plant;
 mod propagator;
+mod secant;
 mod together;
 
 pub use expm::matrix_exponential;

@@ -14,36 +14,13 @@
 
 use super::law::{MemberMotion, Tangent};
 use super::members::Together;
-use super::plant::{FORCE_TOLERANCE, Plant, SECANT_STEPS, SWEEPS};
-
-/// Relative change of the forces in a Newton step after which there is none: what it leaves is of the order of its square.
-pub(super) const LAST_STEP: f64 = 1e-6;
+use super::plant::Plant;
+use super::secant::{FORCE_TOLERANCE, LAST_STEP, SECANT_STEPS};
 
 impl Plant<'_> {
-    /// Sweeps over the elements at the most: none is solved again where nothing else moves it.
-    pub(super) fn sweeps(&self) -> usize {
-        let count = self.elements.len();
-        if self.together.members.len() == count || (count == 1 && !self.any_dry) {
-            1
-        } else {
-            SWEEPS
-        }
-    }
-
-    /// Takes the forces of the members to where a polynomial through the last five steps leads,
-    /// 5 S₀ − 10 S₁ + 10 S₂ − 5 S₃ + S₄ from the last backwards.
-    pub(super) fn extrapolate(&mut self) {
-        for (&i, before) in self.together.members.iter().zip(&mut self.together.before) {
-            let now = self.smooth[i];
-            let [s1, s2, s3, s4] = *before;
-            self.smooth[i] = 5.0 * (now - s3) - 10.0 * (s1 - s2) + s4;
-            *before = [now, s1, s2, s3];
-        }
-    }
-
     /// (5); true if no force changed.
     pub(super) fn solve_together(&mut self, time_s: f64) -> bool {
-        let (m, c) = (self.elements.len(), &self.compliance);
+        let (m, c) = (self.joints.len(), &self.compliance);
         let Together {
             members,
             without,
@@ -55,7 +32,7 @@ impl Plant<'_> {
         let g = members.len();
         for (a, &i) in members.iter().enumerate() {
             let (mut d, mut v) = (self.free_displacement[i], self.free_velocity[i]);
-            for j in (0..m).filter(|j| !self.has_tangent[*j]) {
+            for j in (0..m).filter(|j| !self.joints[*j].has_tangent) {
                 let k = i * m + j;
                 let (s, dry) = (self.smooth[j], self.dry_force[j]);
                 d -= c.displacement[k] * s + c.dry_displacement[k] * dry;
@@ -71,7 +48,8 @@ impl Plant<'_> {
                     displacement -= c.displacement[i * m + j] * self.smooth[j];
                     velocity -= c.velocity[i * m + j] * self.smooth[j];
                 }
-                let Tangent { force, damping } = self.elements[i].law.tangent(MemberMotion {
+                let element = self.joints[i].elements[0];
+                let Tangent { force, damping } = self.elements[element].law.tangent(MemberMotion {
                     displacement,
                     velocity,
                     time_s,
@@ -92,6 +70,9 @@ impl Plant<'_> {
             if is_last {
                 break;
             }
+        }
+        for &i in &*members {
+            self.part[self.joints[i].elements[0]] = self.smooth[i];
         }
         let mut each = members.iter().zip(&*old);
         each.all(|(&i, old)| (self.smooth[i] - old).abs() <= FORCE_TOLERANCE * self.smooth[i].abs())

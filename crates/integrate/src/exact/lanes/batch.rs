@@ -245,7 +245,7 @@ impl<R: Row> Seen<R> {
             },
             net: zero.clone(),
             acceleration: zero.clone(),
-            carried: vec![Pack::ZERO; lanes.block.elements.len()],
+            carried: vec![Pack::ZERO; lanes.block.laws.len()],
         }
     }
 

@@ -3,7 +3,7 @@
 use pulp::{Arch, Simd};
 use simgap_model::{BodyPoint, Node};
 
-use super::element::{ElementLanes, LaneLaw};
+use super::joint::{JointLanes, LaneLaw};
 use super::kernel::LaneKernel;
 use super::law::OneByOne;
 use super::members::Together;
@@ -11,6 +11,7 @@ use super::row::{Row, State, change, entry};
 use super::set::LaneSet;
 use super::wide::{Which, Wide};
 use super::{LANES, Mask, Pack};
+use crate::exact::joint::Joint;
 use crate::exact::law::{ForceLaw, Port};
 use crate::exact::plant::Plant;
 
@@ -18,13 +19,17 @@ use crate::exact::plant::Plant;
 pub(super) struct Block<'a> {
     pub(super) arch: Arch,
     pub(super) kernel: LaneKernel,
+    /// Of each element.
     pub(super) ports: Vec<Port>,
     pub(super) laws: Vec<Box<dyn LaneLaw + 'a>>,
-    pub(super) elements: Vec<ElementLanes>,
-    /// How the forces of element j move element i, row-major, as in the march of one set.
+    /// The part of each element in S of its joint, and room for a trial of it.
+    pub(super) part: Vec<Pack>,
+    pub(super) trial: Vec<Pack>,
+    /// Which elements stand at a joint, and the joints.
+    pub(super) places: Vec<Joint>,
+    pub(super) joints: Vec<JointLanes>,
+    /// How the forces of joint j move joint i, row-major, as in the march of one set.
     pub(super) compliance: [Vec<Pack>; 4],
-    /// Which elements are solved together.
-    pub(super) has_tangent: Vec<bool>,
     pub(super) together: Together,
     sweeps: usize,
     any_dry: bool,
@@ -119,18 +124,16 @@ impl<'a> Block<'a> {
         sets: &[&LaneSet<'a>; LANES],
         is_read: &dyn Fn(usize) -> bool,
     ) -> Block<'a> {
-        let m = sets[0].elements.len();
         let plants = sets.map(LaneSet::begin);
+        let m = plants[0].joints.len();
+        let count = sets[0].elements.len();
         let of_plants = |value: &dyn Fn(&Plant<'_>) -> f64| Pack::of(|l| value(&plants[l]));
         let fold = |part: usize| -> Vec<Pack> {
             let entry = |k: usize| of_plants(&|p| p.compliance.parts()[part][k]);
             (0..m * m).map(entry).collect()
         };
         let compliance = [fold(0), fold(1), fold(2), fold(3)];
-        let element = |i: usize| ElementLanes {
-            alone: m == 1,
-            dry: plants[0].dry[i],
-            remembers: plants[0].remembers[i],
+        let joint = |i: usize| JointLanes {
             displacement: Pack::ZERO,
             velocity: Pack::ZERO,
             time_s: Pack::ZERO,
@@ -149,13 +152,12 @@ impl<'a> Block<'a> {
                 of_plants(&|p| p.from[i].velocity),
                 of_plants(&|p| p.from[i].time_s),
             ],
+            force: Pack::ZERO,
+            dry: [Pack::ZERO; 3],
             tangent: [Pack::ZERO; 2],
-            open: Mask::ALL,
+            gain: of_plants(&|p| p.gain[i]),
+            before: [0, 1, 2, 3].map(|k| of_plants(&|p| p.before[i][k])),
         };
-        let members = &plants[0].together.members;
-        let before = (0..members.len())
-            .map(|a| [0, 1, 2, 3].map(|k| of_plants(&|p| p.together.before[a][k])));
-        let together = Together::new(members, before.collect());
         let law = |i: usize| -> Box<dyn LaneLaw + 'a> {
             let peers: [&'a dyn ForceLaw; LANES] = sets.map(|set| set.elements[i].law.as_ref());
             peers[0]
@@ -166,20 +168,22 @@ impl<'a> Block<'a> {
             arch,
             kernel: LaneKernel::new(arch, sets, is_read),
             ports: sets[0].elements.iter().map(|e| e.port).collect(),
-            laws: (0..m).map(law).collect(),
-            elements: (0..m).map(element).collect(),
+            laws: (0..count).map(law).collect(),
+            part: (0..count).map(|i| of_plants(&|p| p.part[i])).collect(),
+            trial: vec![Pack::ZERO; count],
+            places: plants[0].joints.clone(),
+            joints: (0..m).map(joint).collect(),
             compliance,
-            has_tangent: plants[0].has_tangent.clone(),
-            together,
+            together: Together::new(&plants[0].together.members),
             sweeps: plants[0].sweeps(),
-            any_dry: plants[0].dry.contains(&true),
-            spread: (0..m)
+            any_dry: plants[0].any_dry,
+            spread: (0..count)
                 .map(|i| {
                     sets.iter()
                         .any(|set| set.elements[i].law.is_spread_over_steps())
                 })
                 .collect(),
-            any_memory: plants[0].remembers.contains(&true),
+            any_memory: sets[0].elements.iter().any(|e| e.law.remembers()),
             free: vec![[Pack::ZERO; 2]; m],
             step_s: Pack::of(|l| sets[l].propagator.time_step_s),
             start_s: Pack::of(|l| sets[l].excitation.start_s),
@@ -198,12 +202,10 @@ impl<'a> Block<'a> {
         base: &[Pack],
         steps: usize,
     ) {
-        for (element, &port) in self.elements.iter().zip(&self.ports) {
-            spread(simd, port.force, &element.smooth, before.packs_mut());
-        }
+        self.spread_smooth(simd, before);
         let forces = [before.packs(), after.packs()];
         self.kernel.step(simd, state, forces, next);
-        if !self.elements.is_empty() {
+        if !self.joints.is_empty() {
             self.solve(simd, next, base, steps as f64);
             self.push(simd, before, next);
         }
@@ -215,29 +217,24 @@ impl<'a> Block<'a> {
     fn solve<S: Simd, R: Row>(&mut self, simd: S, next: &State<R>, base: &[Pack], steps: f64) {
         let passed = Wide::splat(simd, steps) * Wide::of(simd, &self.step_s);
         let time_s = (Wide::of(simd, &self.start_s) + passed).pack();
-        let parts = self.elements.iter_mut().zip(&mut self.free);
-        for ((element, free), &port) in parts.zip(&self.ports) {
+        for (k, (joint, free)) in self.joints.iter_mut().zip(&mut self.free).enumerate() {
+            let port = self.ports[self.places[k].elements[0]];
             *free = motion_across(simd, port, next, base);
-            element.time_s = time_s;
-            element.free_velocity = free[1];
-            element.start_velocity = element.end_velocity;
+            joint.time_s = time_s;
+            joint.free_velocity = free[1];
+            joint.start_velocity = joint.end_velocity;
+            joint.extrapolate(simd);
         }
-        self.extrapolate(simd);
         let mut open = Mask::ALL;
         for _ in 0..self.sweeps {
             let mut moved = Which::of(simd, &Mask::NONE);
             if !self.together.members.is_empty() {
                 moved = moved | Which::of(simd, &self.solve_together(&open));
             }
-            for i in 0..self.elements.len() {
-                if self.has_tangent[i] {
-                    continue;
+            for k in 0..self.joints.len() {
+                if !self.places[k].has_tangent {
+                    moved = moved | Which::of(simd, &self.solve_joint(simd, k, &open));
                 }
-                self.prepare(simd, i);
-                let element = &mut self.elements[i];
-                element.open = open;
-                self.laws[i].solve(self.arch, element);
-                moved = moved | Which::of(simd, &element.open);
             }
             if !moved.any() {
                 break;
@@ -249,50 +246,25 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Motion of an element without its own forces.
-    #[inline(always)]
-    fn prepare<S: Simd>(&mut self, simd: S, i: usize) {
-        let m = self.elements.len();
-        let [mut displacement, mut velocity] = self.free[i];
-        let [x, v, dry_x, dry_v] = &self.compliance;
-        for j in (0..m).filter(|&j| j != i) {
-            let (k, other) = (i * m + j, &self.elements[j]);
-            let forces = [&other.smooth, &other.dry_force];
-            displacement = less_products(
-                simd,
-                &displacement,
-                [&x[k], forces[0]],
-                [&dry_x[k], forces[1]],
-            );
-            velocity = less_products(simd, &velocity, [&v[k], forces[0]], [&dry_v[k], forces[1]]);
-        }
-        let element = &mut self.elements[i];
-        (element.displacement, element.velocity) = (displacement, velocity);
-    }
-
     /// Commits the memories, with all forces where they settled.
     #[inline(always)]
     fn remember<S: Simd>(&mut self, simd: S) {
-        let m = self.elements.len();
+        let m = self.joints.len();
         let [x, _, dry_x, _] = &self.compliance;
         for i in 0..m {
-            if !self.elements[i].remembers {
+            let Some(element) = self.places[i].remembers else {
                 continue;
-            }
+            };
             let mut displacement = self.free[i][0];
             for j in 0..m {
-                let (k, other) = (i * m + j, &self.elements[j]);
+                let (k, other) = (i * m + j, &self.joints[j]);
                 let forces = [&other.smooth, &other.dry_force];
-                displacement = less_products(
-                    simd,
-                    &displacement,
-                    [&x[k], forces[0]],
-                    [&dry_x[k], forces[1]],
-                );
+                let (smooth, dry) = ([&x[k], forces[0]], [&dry_x[k], forces[1]]);
+                displacement = less_products(simd, &displacement, smooth, dry);
             }
-            let element = &mut self.elements[i];
-            element.displacement = displacement;
-            self.laws[i].remember(self.arch, element);
+            let joint = &mut self.joints[i];
+            joint.displacement = displacement;
+            self.laws[element].remember(self.arch, joint);
         }
     }
 
@@ -300,25 +272,34 @@ impl<'a> Block<'a> {
     #[inline(always)]
     fn push<S: Simd, R: Row>(&mut self, simd: S, net: &mut R, next: &mut State<R>) {
         net.packs_mut().fill(Pack::ZERO);
-        for (element, &port) in self.elements.iter().zip(&self.ports) {
-            spread(simd, port.force, &element.smooth, net.packs_mut());
-        }
+        self.spread_smooth(simd, net);
         self.kernel.push_end(simd, net, next);
         if self.any_dry {
             net.packs_mut().fill(Pack::ZERO);
-            for (element, &port) in self.elements.iter().zip(&self.ports) {
-                spread(simd, port.force, &element.dry_force, net.packs_mut());
+            for (joint, place) in self.joints.iter().zip(&self.places) {
+                let port = self.ports[place.elements[0]];
+                spread(simd, port.force, &joint.dry_force, net.packs_mut());
             }
             self.kernel.push_held(simd, net, next);
+        }
+    }
+
+    /// Adds what S of all joints does to the degrees of freedom.
+    #[inline(always)]
+    fn spread_smooth<S: Simd, R: Row>(&self, simd: S, net: &mut R) {
+        for (joint, place) in self.joints.iter().zip(&self.places) {
+            let port = self.ports[place.elements[0]];
+            spread(simd, port.force, &joint.smooth, net.packs_mut());
         }
     }
 
     /// Forces that the elements carry at a sample.
     #[inline(always)]
     pub(super) fn carried<S: Simd>(&self, simd: S, carried: &mut [Pack]) {
-        for (carried, element) in carried.iter_mut().zip(&self.elements) {
-            let smooth = Wide::of(simd, &element.smooth);
-            *carried = (smooth + Wide::of(simd, &element.dry_end)).pack();
+        carried.copy_from_slice(&self.part);
+        for (joint, place) in self.joints.iter().zip(&self.places) {
+            let carried = &mut carried[place.elements[0]];
+            *carried = (Wide::of(simd, carried) + Wide::of(simd, &joint.dry_end)).pack();
         }
     }
 

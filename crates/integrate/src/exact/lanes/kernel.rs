@@ -31,6 +31,13 @@ fn add_products<S: Simd>(simd: S, mut sum: Wide<S>, matrix: &[Pack], column: &[P
     sum
 }
 
+/// The product alone, of at least one entry.
+#[inline(always)]
+fn products<S: Simd>(simd: S, matrix: &[Pack], column: &[Pack]) -> Wide<S> {
+    let first = Wide::of(simd, &matrix[0]) * Wide::of(simd, &column[0]);
+    add_products(simd, first, &matrix[1..], &column[1..])
+}
+
 impl LaneKernel {
     pub(super) fn new(
         arch: Arch,
@@ -78,12 +85,12 @@ impl LaneKernel {
         for (half, next) in halves.into_iter().enumerate() {
             for (k, next) in next.packs_mut().iter_mut().enumerate() {
                 let i = half * n + k;
-                let sum = Wide::zero(simd);
-                let sum = add_products(simd, sum, &gamma0[i * n..(i + 1) * n], before);
-                let sum = add_products(simd, sum, &gamma1[i * n..(i + 1) * n], after);
+                let forced = products(simd, &gamma0[i * n..(i + 1) * n], before);
+                let forced = add_products(simd, forced, &gamma1[i * n..(i + 1) * n], after);
                 let row = &phi[2 * i * n..2 * (i + 1) * n];
-                let sum = add_products(simd, sum, &row[..n], x);
-                *next = add_products(simd, sum, &row[n..], v).pack();
+                let of_x = products(simd, &row[..n], x);
+                let of_v = products(simd, &row[n..], v);
+                *next = (forced + (of_x + of_v)).pack();
             }
         }
     }

@@ -4,7 +4,7 @@ use std::any::Any;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::element::{ElementLanes, LaneLaw};
+use super::joint::{Acting, JointLanes, LaneLaw};
 use super::solve::{self, LawLanes};
 use super::{LANES, Pack};
 use crate::exact::law::{Followed, ForceLaw, MemberMotion, Tangent};
@@ -73,33 +73,33 @@ where
     L: ForceLaw,
     F: Fn([f64; K]) -> L + Send + Sync,
 {
-    fn solve(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Solve(self, element));
+    fn act(&self, arch: Arch, is: Acting, joint: &mut JointLanes) {
+        arch.dispatch(Act(self, is, joint));
     }
 
-    fn tangent(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Tangents(self, element));
+    fn tangent(&self, arch: Arch, joint: &mut JointLanes) {
+        arch.dispatch(Tangents(self, joint));
     }
 
-    fn remember(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Remember(self, element));
+    fn remember(&self, arch: Arch, joint: &mut JointLanes) {
+        arch.dispatch(Remember(self, joint));
     }
 }
 
-/// [`solve::solve`] in the best instructions there are; a closure would not be inlined into them.
-struct Solve<'a, L>(&'a L, &'a mut ElementLanes);
+/// [`solve::act`] in the best instructions there are; a closure would not be inlined into them.
+struct Act<'a, L>(&'a L, Acting, &'a mut JointLanes);
 
-impl<L: LawLanes> WithSimd for Solve<'_, L> {
+impl<L: LawLanes> WithSimd for Act<'_, L> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        solve::solve(simd, self.0, self.1);
+        solve::act(simd, self.0, self.1, self.2);
     }
 }
 
 /// [`solve::tangent`] likewise.
-struct Tangents<'a, L>(&'a L, &'a mut ElementLanes);
+struct Tangents<'a, L>(&'a L, &'a mut JointLanes);
 
 impl<L: LawLanes> WithSimd for Tangents<'_, L> {
     type Output = ();
@@ -111,7 +111,7 @@ impl<L: LawLanes> WithSimd for Tangents<'_, L> {
 }
 
 /// [`solve::remember`] likewise.
-struct Remember<'a, L>(&'a L, &'a mut ElementLanes);
+struct Remember<'a, L>(&'a L, &'a mut JointLanes);
 
 impl<L: LawLanes> WithSimd for Remember<'_, L> {
     type Output = ();
@@ -174,16 +174,16 @@ impl<L: PackLaw> LawLanes for Packed<L> {
 }
 
 impl<L: PackLaw> LaneLaw for Packed<L> {
-    fn solve(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Solve(self, element));
+    fn act(&self, arch: Arch, is: Acting, joint: &mut JointLanes) {
+        arch.dispatch(Act(self, is, joint));
     }
 
-    fn tangent(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Tangents(self, element));
+    fn tangent(&self, arch: Arch, joint: &mut JointLanes) {
+        arch.dispatch(Tangents(self, joint));
     }
 
-    fn remember(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Remember(self, element));
+    fn remember(&self, arch: Arch, joint: &mut JointLanes) {
+        arch.dispatch(Remember(self, joint));
     }
 }
 
@@ -221,16 +221,16 @@ impl LawLanes for OneByOne<'_> {
 }
 
 impl LaneLaw for OneByOne<'_> {
-    fn solve(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Solve(self, element));
+    fn act(&self, arch: Arch, is: Acting, joint: &mut JointLanes) {
+        arch.dispatch(Act(self, is, joint));
     }
 
-    fn tangent(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Tangents(self, element));
+    fn tangent(&self, arch: Arch, joint: &mut JointLanes) {
+        arch.dispatch(Tangents(self, joint));
     }
 
-    fn remember(&self, arch: Arch, element: &mut ElementLanes) {
-        arch.dispatch(Remember(self, element));
+    fn remember(&self, arch: Arch, joint: &mut JointLanes) {
+        arch.dispatch(Remember(self, joint));
     }
 }
 

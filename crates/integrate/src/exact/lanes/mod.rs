@@ -12,11 +12,12 @@
 mod batch;
 mod block;
 mod compact;
-mod element;
+mod joint;
 mod kernel;
 mod law;
 mod members;
 mod row;
+mod secant;
 mod set;
 mod solve;
 mod source;
@@ -24,7 +25,7 @@ mod together;
 mod wide;
 
 pub use batch::{Batch, LaneObserver, LaneSnapshot};
-pub use element::{ElementLanes, LaneLaw};
+pub use joint::{Acting, JointLanes, LaneLaw};
 pub use law::{PackLaw, gather, together};
 pub use set::LaneSet;
 

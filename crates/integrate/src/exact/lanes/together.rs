@@ -5,8 +5,7 @@ use pulp::{Simd, WithSimd};
 use super::block::{Block, less_products};
 use super::wide::{Which, Wide};
 use super::{Mask, Pack};
-use crate::exact::plant::{FORCE_TOLERANCE, SECANT_STEPS};
-use crate::exact::together::LAST_STEP;
+use crate::exact::secant::{FORCE_TOLERANCE, LAST_STEP, SECANT_STEPS};
 
 /// A whole solution at a time: not to be compiled again with every march and every observer.
 struct Solve<'a, 'b>(&'a mut Block<'b>, &'a Mask);
@@ -27,23 +26,10 @@ impl Block<'_> {
         arch.dispatch(Solve(self, open))
     }
 
-    /// Takes the forces of the members to where the last five steps lead.
-    #[inline(always)]
-    pub(super) fn extrapolate<S: Simd>(&mut self, simd: S) {
-        let members = self.together.members.iter();
-        for (&i, before) in members.zip(&mut self.together.before) {
-            let now = Wide::of(simd, &self.elements[i].smooth);
-            let [s1, s2, s3, s4] = before.each_ref().map(|pack| Wide::of(simd, pack));
-            let (five, ten) = (Wide::splat(simd, 5.0), Wide::splat(simd, 10.0));
-            self.elements[i].smooth = (five * (now - s3) - ten * (s1 - s2) + s4).pack();
-            *before = [now.pack(), s1.pack(), s2.pack(), s3.pack()];
-        }
-    }
-
     #[inline(always)]
     fn solve_members<S: Simd>(&mut self, simd: S, open: &Mask) -> Mask {
         self.without_members(simd);
-        let m = self.elements.len();
+        let m = self.joints.len();
         let g = self.together.members.len();
         let open = Which::of(simd, open);
         let mut going = open;
@@ -52,8 +38,8 @@ impl Block<'_> {
             for a in 0..g {
                 self.tangent(simd, a);
                 let i = self.together.members[a];
-                let [force, damping] = &self.elements[i].tangent;
-                let smooth = Wide::of(simd, &self.elements[i].smooth);
+                let [force, damping] = &self.joints[i].tangent;
+                let smooth = Wide::of(simd, &self.joints[i].smooth);
                 let damping = Wide::of(simd, damping);
                 self.together.residual[a] = (Wide::of(simd, force) - smooth).pack();
                 for (b, &j) in self.together.members.iter().enumerate() {
@@ -67,19 +53,22 @@ impl Block<'_> {
             let members = self.together.members.iter();
             for (&i, change) in members.zip(&self.together.residual) {
                 let change = Wide::of(simd, change);
-                let smooth = Wide::of(simd, &self.elements[i].smooth) + change;
+                let smooth = Wide::of(simd, &self.joints[i].smooth) + change;
                 is_last = is_last & change.abs().is_at_most(last * smooth.abs());
-                going.put(smooth, &mut self.elements[i].smooth);
+                going.put(smooth, &mut self.joints[i].smooth);
             }
             going = going & !is_last;
             if !going.any() {
                 break;
             }
         }
+        for &i in &self.together.members {
+            self.part[self.places[i].elements[0]] = self.joints[i].smooth;
+        }
         let tolerance = Wide::splat(simd, FORCE_TOLERANCE);
         let mut settled = Which::of(simd, &Mask::ALL);
         for (&i, old) in self.together.members.iter().zip(&self.together.old) {
-            let smooth = Wide::of(simd, &self.elements[i].smooth);
+            let smooth = Wide::of(simd, &self.joints[i].smooth);
             let change = (smooth - Wide::of(simd, old)).abs();
             settled = settled & change.is_at_most(tolerance * smooth.abs());
         }
@@ -89,38 +78,38 @@ impl Block<'_> {
     /// Motion of the members without their own forces.
     #[inline(always)]
     fn without_members<S: Simd>(&mut self, simd: S) {
-        let m = self.elements.len();
+        let m = self.joints.len();
         let [x, v, dry_x, dry_v] = &self.compliance;
         for (a, &i) in self.together.members.iter().enumerate() {
             let [mut displacement, mut velocity] = self.free[i];
-            for j in (0..m).filter(|j| !self.has_tangent[*j]) {
-                let (k, other) = (i * m + j, &self.elements[j]);
+            for j in (0..m).filter(|j| !self.places[*j].has_tangent) {
+                let (k, other) = (i * m + j, &self.joints[j]);
                 let forces = [&other.smooth, &other.dry_force];
                 let (xs, vs) = ([&x[k], forces[0]], [&v[k], forces[0]]);
                 displacement = less_products(simd, &displacement, xs, [&dry_x[k], forces[1]]);
                 velocity = less_products(simd, &velocity, vs, [&dry_v[k], forces[1]]);
             }
             self.together.without[a] = [displacement, velocity];
-            self.together.old[a] = self.elements[i].smooth;
+            self.together.old[a] = self.joints[i].smooth;
         }
     }
 
     /// Force and slope of a member where the forces of all take it.
     #[inline(always)]
     fn tangent<S: Simd>(&mut self, simd: S, a: usize) {
-        let m = self.elements.len();
+        let m = self.joints.len();
         let i = self.together.members[a];
         let without = &self.together.without[a];
         let mut displacement = Wide::of(simd, &without[0]);
         let mut velocity = Wide::of(simd, &without[1]);
         for &j in &self.together.members {
-            let smooth = Wide::of(simd, &self.elements[j].smooth);
+            let smooth = Wide::of(simd, &self.joints[j].smooth);
             displacement -= Wide::of(simd, &self.compliance[0][i * m + j]) * smooth;
             velocity -= Wide::of(simd, &self.compliance[1][i * m + j]) * smooth;
         }
-        let element = &mut self.elements[i];
-        (element.displacement, element.velocity) = (displacement.pack(), velocity.pack());
-        self.laws[i].tangent(self.arch, element);
+        let joint = &mut self.joints[i];
+        (joint.displacement, joint.velocity) = (displacement.pack(), velocity.pack());
+        self.laws[self.places[i].elements[0]].tangent(self.arch, joint);
     }
 }
 

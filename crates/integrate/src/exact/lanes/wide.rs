@@ -124,6 +124,11 @@ impl<S: Simd> Which<S> {
     }
 
     #[inline(always)]
+    pub(super) fn simd(&self) -> S {
+        self.simd
+    }
+
+    #[inline(always)]
     pub(super) fn mask(self) -> Mask {
         self.mask
     }
