@@ -62,6 +62,22 @@ fn least(pool: &[CandidateModel]) -> Option<&CandidateModel> {
     pool.iter().min_by(by_misfit)
 }
 
+/// The first of some ranked sets of which each holds an effect, or a wrong nominal value, that none before holds, then the first of
+/// the others: a cause that leads now and stands in for another is in most of the best sets.
+fn survivors_of(ranked: &[CandidateModel], most: usize) -> Vec<&CandidateModel> {
+    let mut known: BTreeSet<String> = BTreeSet::new();
+    let (mut new, rest): (Vec<&CandidateModel>, Vec<&CandidateModel>) =
+        ranked.iter().partition(|set| {
+            let names: Vec<String> = set.effects().iter().map(name).collect();
+            let before = known.len();
+            known.extend(names);
+            known.len() > before
+        });
+    new.extend(rest);
+    new.truncate(most);
+    new
+}
+
 /// Told what is being done, and asked whether to go on.
 #[derive(Clone, Copy)]
 pub struct Budget<'a> {
@@ -184,12 +200,13 @@ impl<'a> Search<'a> {
         fitted
     }
 
-    /// Whether nothing can be added to the best set, or nothing that could make it likelier.
+    /// Whether nothing that could make the best set likelier can be added to it. One that has no room for more, and leaves more than
+    /// noise, does not end the search: what is smaller may grow into a better one.
     fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        if self.is_spent() || self.is_full(best) {
+        if self.is_spent() {
             return Ok(true);
         }
         let left = best.fit.variance.iter().zip(self.unexplainable(best));
@@ -337,7 +354,7 @@ impl<'a> Search<'a> {
                 return Ok(pool);
             }
             step(["pairs of effects", "sets of three"][size]);
-            let best: Vec<&CandidateModel> = front.iter().take(*survivors).collect();
+            let best = survivors_of(&front, *survivors);
             let mut next: Vec<CandidateModel> = Vec::new();
             for survivor in &best {
                 next.extend(self.extend(survivor, FITTED[size + 1])?);
@@ -405,7 +422,7 @@ impl<'a> Search<'a> {
             });
             let changed = changed.collect::<Result<Vec<_>, EstimateError>>()?;
             pool.extend(changed.into_iter().flatten());
-            pool.extend(self.rescale(&best));
+            pool.extend(leading.iter().flat_map(|set| self.rescale(set)));
             pool.retain(|set| set.log_marginal_likelihood.is_finite());
             rank(pool);
             let stays = pool.first().is_none_or(|first| first.key() == best.key());
