@@ -3,6 +3,9 @@
 import concurrent.futures
 import json
 import multiprocessing
+import os
+import signal
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -146,6 +149,43 @@ def test_dask_gives_the_same(fleet, by_command, tmp_path):
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         simgap.fleet.run(fleet / "plan.toml", tmp_path, client=client, progress=False)
     assert contents(tmp_path) == by_command
+
+
+@pytest.fixture(scope="module")
+def ray():
+    """A Ray of two workers on this machine."""
+    try:
+        import ray
+    except ImportError:
+        line = "RAY IS NOT INSTALLED: that a plan on Ray gives the table of the command was NOT tested"
+        warnings.warn(line, stacklevel=1)
+        pytest.skip(line)
+    ray.init(num_cpus=2, include_dashboard=False, object_store_memory=80 << 20, log_to_driver=False)
+    yield ray
+    ray.shutdown()
+
+
+def test_ray_gives_the_same(ray, fleet, by_command, tmp_path):
+    found = simgap.fleet.run(fleet / "plan.toml", tmp_path, client=ray, progress=False)
+    assert contents(tmp_path) == by_command
+    assert (found.answered, found.failed) == (6, 1)
+
+
+def test_a_worker_of_ray_that_dies_loses_nothing(ray, fleet, by_command, tmp_path, monkeypatch):
+    died = tmp_path / "died"
+
+    def work(unit, options, done=simgap.fleet.work):
+        # The first unit takes its worker along, once.
+        try:
+            died.touch(exist_ok=False)
+        except FileExistsError:
+            return done(unit, options)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    monkeypatch.setattr(simgap.fleet, "work", work)
+    out = tmp_path / "out"
+    simgap.fleet.run(fleet / "plan.toml", out, client=ray, progress=False)
+    assert died.exists() and contents(out) == by_command
 
 
 def test_records_in_a_store_give_the_same(fleet, by_command, tmp_path):
