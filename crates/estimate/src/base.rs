@@ -202,10 +202,12 @@ impl Base<'_> {
         let estimate = &self.fit.estimate;
         let runs = self.problem.runs.len();
         let mut simulators = Vec::with_capacity(trials.len() * runs);
+        let base: Vec<Placed> = estimate.placed().cloned().collect();
+        let here = self.problem.simulators(&base, None)?;
         for (values, _) in trials {
             let trial = Placed::new(candidate.effect, candidate.at.clone(), values.clone());
             let effects: Vec<Placed> = estimate.placed().chain([&trial]).cloned().collect();
-            simulators.extend(self.problem.simulators(&effects)?);
+            simulators.extend(self.problem.simulators(&effects, Some(&here))?);
         }
         let jobs: Vec<Job<'_>> = simulators
             .iter()

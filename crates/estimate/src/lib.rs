@@ -80,6 +80,7 @@ mod linearise;
 mod merit;
 mod normal;
 mod outright;
+mod points;
 mod problem;
 mod products;
 mod reach;

@@ -1,12 +1,12 @@
 //! Residuals and their sensitivities at one point.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use simgap_simulate::{Job, LANES, Simulator};
+use simgap_simulate::{Job, LANES};
 
 use crate::layout::Layout;
+use crate::points::{Point, Simulators};
 use crate::reach::Reach;
 use crate::signals::Signals;
 use crate::{EstimateError, Problem};
@@ -33,56 +33,6 @@ pub(crate) struct Linearised {
     pub(crate) columns: Vec<Vec<Column>>,
 }
 
-/// A run to be simulated.
-struct Point {
-    simulator: Arc<Simulator>,
-    run: usize,
-    initial: Vec<f64>,
-    /// Without what moves in steps.
-    smooth: bool,
-}
-
-/// The simulators of packed vectors: one for all that differ in initial states alone.
-struct Simulators<'a> {
-    problem: &'a Problem,
-    layout: &'a Layout,
-    known: HashMap<(Option<usize>, Vec<u64>), Arc<Simulator>>,
-}
-
-impl<'a> Simulators<'a> {
-    fn new(problem: &'a Problem, layout: &'a Layout) -> Simulators<'a> {
-        Simulators {
-            problem,
-            layout,
-            known: HashMap::new(),
-        }
-    }
-
-    /// A run at a packed vector.
-    fn point(&mut self, theta: &[f64], run: usize, smooth: bool) -> Result<Point, EstimateError> {
-        Ok(Point {
-            simulator: self.of(theta, run)?,
-            run,
-            initial: self.layout.state(theta, run).to_vec(),
-            smooth,
-        })
-    }
-
-    fn of(&mut self, theta: &[f64], run: usize) -> Result<Arc<Simulator>, EstimateError> {
-        let values = self.layout.values_in(theta, run).map(f64::to_bits);
-        // What a run has of its own depends on when it was taken.
-        let own = (self.layout.own_len() > 0).then_some(run);
-        let key = (own, values.collect());
-        if let Some(known) = self.known.get(&key) {
-            return Ok(Arc::clone(known));
-        }
-        let placed = self.layout.placed_in(theta, run);
-        let simulator = Arc::new(self.problem.simulator(&placed, run)?);
-        self.known.insert(key, Arc::clone(&simulator));
-        Ok(simulator)
-    }
-}
-
 /// Measured minus predicted at every point, in as many batches as there are threads to march them.
 fn simulate(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateError>> {
     let share = points.len().div_ceil(rayon::current_num_threads().max(1));
@@ -106,18 +56,34 @@ fn batch(problem: &Problem, points: &[Point]) -> Vec<Result<Signals, EstimateErr
     subtracted.collect()
 }
 
-/// Measured minus predicted, for every run and channel, at several vectors at once; without what moves in steps if `smooth`.
+/// How vectors are simulated together.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Together {
+    /// Each by itself.
+    Apart,
+    /// Near the first of them, without what moves in steps.
+    NearTheFirst,
+}
+
+/// Measured minus predicted, for every run and channel, at several vectors at once.
 pub(crate) fn discrepancies_of(
     problem: &Problem,
     layout: &Layout,
     thetas: &[Vec<f64>],
-    smooth: bool,
+    together: Together,
 ) -> Vec<Result<Vec<Signals>, EstimateError>> {
     let mut simulators = Simulators::new(problem, layout);
     let mut ready = vec![];
     let mut points = vec![];
+    let is_near = together == Together::NearTheFirst;
     for theta in thetas {
-        let of_theta = (0..problem.runs.len()).map(|run| simulators.point(theta, run, smooth));
+        let of_theta = (0..problem.runs.len()).map(|run| {
+            let first = match (is_near, thetas.first()) {
+                (true, Some(first)) => Some(simulators.of(first, run, None)?),
+                _ => None,
+            };
+            simulators.point(theta, run, is_near, first.as_ref())
+        });
         let of_theta: Result<Vec<Point>, EstimateError> = of_theta.collect();
         ready.push(of_theta.map(|of_theta| points.extend(of_theta)));
     }
@@ -244,11 +210,12 @@ fn probe_from(
         let wanted: Vec<(usize, usize)> = entries
             .filter(|&(place, entry)| !layout.is_held(entry) && wants(run, place))
             .collect();
-        let whole = simulators.point(theta, run, false)?;
+        let whole = simulators.point(theta, run, false, None)?;
+        let here = Arc::clone(&whole.simulator);
         // What moves in steps is left out at both ends of a difference.
         if !wanted.is_empty() && whole.simulator.is_stepped() {
             parts.push((run, Part::Smooth));
-            points.push(simulators.point(theta, run, true)?);
+            points.push(simulators.point(theta, run, true, None)?);
         }
         if known.is_none() {
             parts.push((run, Part::Whole));
@@ -256,7 +223,7 @@ fn probe_from(
         }
         for (place, entry) in wanted {
             next[entry] += difference(problem, layout, theta, entry);
-            match simulators.point(&next, run, true) {
+            match simulators.point(&next, run, true, Some(&here)) {
                 Ok(point) => {
                     parts.push((run, Part::Moved(place, entry)));
                     points.push(point);
@@ -426,7 +393,8 @@ at = "block"
                 let moved = |h: f64| {
                     let mut theta = theta.clone();
                     theta[entry] += h * layout.scale[entry];
-                    let moved = discrepancies_of(&problem, &layout, &[theta], false).swap_remove(0);
+                    let moved = discrepancies_of(&problem, &layout, &[theta], Together::Apart)
+                        .swap_remove(0);
                     moved.unwrap().swap_remove(0).swap_remove(0)
                 };
                 let h = 1e-3;

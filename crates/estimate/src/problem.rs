@@ -167,10 +167,12 @@ impl Problem {
         Simulator::with_plant(&self.model, &all, self.substeps, self.plant.as_ref())
     }
 
-    /// [`Problem::simulator`] of every run; one for all where no effect has values of a run's own.
+    /// [`Problem::simulator`] of every run, beside that of `others` if there are any; one for all where no effect has values of a
+    /// run's own.
     pub(crate) fn simulators(
         &self,
         effects: &[Placed],
+        others: Option<&[Arc<Simulator>]>,
     ) -> Result<Vec<Arc<Simulator>>, EstimateError> {
         let mut all = self.given.iter().chain(effects);
         let differ = all.any(|placed| !placed.of_record.is_empty());
@@ -178,7 +180,13 @@ impl Problem {
         for run in 0..self.runs.len() {
             let simulator = match simulators.first() {
                 Some(first) if !differ => Arc::clone(first),
-                _ => Arc::new(self.simulator(effects, run)?),
+                _ => {
+                    let simulator = self.simulator(effects, run)?;
+                    Arc::new(match others.and_then(|others| others.get(run)) {
+                        Some(other) => simulator.beside(other),
+                        None => simulator,
+                    })
+                }
             };
             simulators.push(simulator);
         }

@@ -22,7 +22,7 @@ use simgap_simulate::LANES;
 
 use crate::gram::{Gram, grams};
 use crate::layout::Layout;
-use crate::linearise::{Linearised, Probe, discrepancies_of, probe, reach};
+use crate::linearise::{Linearised, Probe, Together, discrepancies_of, probe, reach};
 use crate::merit::Merit;
 use crate::normal::{damped_step, normal_equations, projected};
 use crate::signals::Signals;
@@ -145,6 +145,9 @@ impl Line<'_> {
         let step = quadratic.solve(&quadratic.gradient, damping)?;
         let next = self.moved(theta, &step);
         let promised = quadratic.promised(&self.between(theta, &next));
+        // A simulator of the user's has no lanes: what the next step wants waits until the point is taken.
+        let has_lanes = self.merit.problem.may_cut();
+        let along = |run, place| has_lanes && along(run, place);
         let probe = probe(self.merit.problem, self.layout, &next, along).ok()?;
         let next = self.judged(next, probe);
         let gain = objective - next.objective;
@@ -174,7 +177,7 @@ impl Line<'_> {
                 .collect();
             let bent = self.bend(theta, (quadratic, at), &steps);
             let thetas: Vec<Vec<f64>> = bent.iter().map(|bent| bent.theta.clone()).collect();
-            let all = discrepancies_of(problem, self.layout, &thetas, false).into_iter();
+            let all = discrepancies_of(problem, self.layout, &thetas, Together::Apart).into_iter();
             let tried = bent.into_iter().zip(all).filter_map(|(bent, signals)| {
                 let next = self.judged(bent.theta, Probe::new(self.layout, signals.ok()?));
                 (next.objective < objective).then_some((bent.is_trusted, next, bent.damping))
@@ -199,7 +202,9 @@ impl Line<'_> {
             .iter()
             .map(|bent| bent.along(layout, theta, &scaled(&bent.step, PART)));
         let thetas: Vec<Vec<f64>> = [theta.to_vec()].into_iter().chain(near).collect();
-        let mut there = discrepancies_of(self.merit.problem, layout, &thetas, true).into_iter();
+        let mut there =
+            discrepancies_of(self.merit.problem, layout, &thetas, Together::NearTheFirst)
+                .into_iter();
         let Some(Ok(here)) = there.next() else {
             return vec![];
         };

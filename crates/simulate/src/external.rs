@@ -1,7 +1,7 @@
 //! A simulator of the user's with its last answers: the same is asked again and again.
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::collections::{HashMap, HashSet};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
 use crate::plant::{Key, Plant, PlantError, PlantRun};
 use crate::response::{Answer, Response};
@@ -15,12 +15,16 @@ const KEPT_RESPONSES: usize = 64;
 pub struct ExternalPlant {
     plant: Box<dyn Plant>,
     answers: Mutex<Answers>,
+    /// Tells those that wait for an answer that one has come.
+    answered: Condvar,
     responses: Mutex<Vec<(Key, Arc<Response>)>>,
 }
 
 #[derive(Default)]
 struct Answers {
     known: HashMap<Key, (u64, Answer)>,
+    /// Questions that somebody has asked and that are not answered yet.
+    under_way: HashSet<Key>,
     numbers: usize,
     /// Counts the questions.
     clock: u64,
@@ -33,16 +37,27 @@ impl ExternalPlant {
         Arc::new(ExternalPlant {
             plant: Box::new(plant),
             answers: Mutex::default(),
+            answered: Condvar::new(),
             responses: Mutex::default(),
         })
     }
 
-    /// The checked answer, from memory where the same was asked before.
+    /// The checked answer, from memory where the same was asked before; where another thread asks it now, its answer.
     pub(crate) fn ask(&self, run: &PlantRun<'_>) -> Result<Answer, PlantError> {
         let key = run.key();
-        if let Some(known) = lock(&self.answers).find(key) {
-            return Ok(known);
+        let mut answers = lock(&self.answers);
+        loop {
+            if let Some(known) = answers.find(key) {
+                return Ok(known);
+            }
+            if answers.under_way.insert(key) {
+                break;
+            }
+            let woken = self.answered.wait(answers);
+            answers = woken.unwrap_or_else(PoisonError::into_inner);
         }
+        drop(answers);
+        let _turn = Turn { of: self, key };
         let signals = self.plant.simulate(run)?;
         run.check(&signals)?;
         let answer = Arc::new(signals);
@@ -70,8 +85,21 @@ impl ExternalPlant {
     }
 }
 
+/// A question under way, until it is answered or refused.
+struct Turn<'a> {
+    of: &'a ExternalPlant,
+    key: Key,
+}
+
+impl Drop for Turn<'_> {
+    fn drop(&mut self) {
+        lock(&self.of.answers).under_way.remove(&self.key);
+        self.of.answered.notify_all();
+    }
+}
+
 /// A lock that a panic elsewhere does not take away: what is behind it is whole at any time.
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

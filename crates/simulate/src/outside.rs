@@ -1,16 +1,20 @@
 //! A model whose plant is a simulator of the user's, ready to be asked.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
 
 use simgap_integrate::exact::ForceLaw;
 use simgap_model::{GROUND, Location, Model, Node, Output};
 
-use crate::external::ExternalPlant;
-use crate::plant::{PlantError, PlantRun};
+use crate::external::{ExternalPlant, lock};
+use crate::plant::{Key, PlantError, PlantRun};
 use crate::port_law::{Member, PortLaw};
 use crate::response::Answer;
-use crate::waveform::{Times, settle};
-use crate::{Run, SimulateError};
+use crate::waveform::{Settled, Times, settle};
+use crate::{Run, SimulateError, Simulator};
+
+/// What came out of a run, once somebody has asked.
+type Place = Arc<Mutex<Option<Result<Arc<Settled>, PlantError>>>>;
 
 /// A simulator with its parameters and the laws at its ports.
 pub(crate) struct Outside {
@@ -26,6 +30,10 @@ pub(crate) struct Outside {
     /// Name of each port, and its displacement and velocity among the outputs.
     ports: Vec<(String, [usize; 2])>,
     laws: Vec<PortLaw>,
+    /// A simulator whose forces are nearly those of this one.
+    beside: Option<Arc<Simulator>>,
+    /// What came out of each run.
+    settled: Mutex<HashMap<Key, Place>>,
 }
 
 impl Outside {
@@ -93,7 +101,17 @@ impl Outside {
                 })
                 .collect(),
             wanted,
+            beside: None,
+            settled: Mutex::default(),
         })
+    }
+
+    /// Begins where the forces of another have settled.
+    pub(crate) fn begin_beside(&mut self, other: &Arc<Simulator>) {
+        let has_laws = |outside: &Outside| !outside.laws.is_empty();
+        if has_laws(self) && other.outside.as_ref().is_some_and(has_laws) {
+            self.beside = Some(Arc::clone(other));
+        }
     }
 
     /// The outputs of the model under inputs, before their maps.
@@ -196,6 +214,29 @@ impl Outside {
                 self.with_run(run, inputs, &self.parameters, |asked| self.plant.ask(asked))?;
             return Ok(answer.to_vec());
         }
+        self.settled(run, inputs)
+            .map(|settled| settled.outputs.clone())
+    }
+
+    /// Forces and motion of a run with laws, brought together once.
+    fn settled(&self, run: &Run, inputs: Vec<Vec<f64>>) -> Result<Arc<Settled>, SimulateError> {
+        let key = self.with_run(run, inputs.clone(), &self.parameters, |asked| {
+            Ok(asked.key())
+        })?;
+        let place = Arc::clone(lock(&self.settled).entry(key).or_default());
+        // Whoever asks for the same meanwhile waits for it here.
+        let mut place = lock(&place);
+        let found = match place.as_ref() {
+            Some(known) => known.clone(),
+            None => match self.settle(run, inputs) {
+                Err(SimulateError::Plant(error)) => Err(error),
+                other => Ok(Arc::new(other?)),
+            },
+        };
+        Ok(place.insert(found).clone()?)
+    }
+
+    fn settle(&self, run: &Run, inputs: Vec<Vec<f64>>) -> Result<Settled, SimulateError> {
         // The response is that of the nominal model under the inputs of the record, whatever is done to them.
         let response = self.with_run(run, run.inputs.clone(), &self.nominal, |asked| {
             self.plant.response(asked, &self.motions())
@@ -206,18 +247,32 @@ impl Outside {
             len: run.len,
         };
         let name = |port: usize| self.ports[port].0.clone();
-        self.with_run(run, inputs, &self.parameters, |asked| {
-            let ask = |forces: &[Vec<f64>]| -> Result<Answer, PlantError> {
-                let forces: Vec<(String, Vec<f64>)> = (0..forces.len())
-                    .map(&name)
-                    .zip(forces.iter().cloned())
-                    .collect();
-                self.plant.ask(&PlantRun {
-                    forces: &forces,
-                    ..*asked
-                })
-            };
-            settle(&self.laws, &response, times, ask, name)
-        })
+        let from = |first: Vec<Vec<f64>>, inputs| {
+            self.with_run(run, inputs, &self.parameters, |asked| {
+                let ask = |forces: &[Vec<f64>]| -> Result<Answer, PlantError> {
+                    let forces: Vec<(String, Vec<f64>)> = (0..forces.len())
+                        .map(&name)
+                        .zip(forces.iter().cloned())
+                        .collect();
+                    self.plant.ask(&PlantRun {
+                        forces: &forces,
+                        ..*asked
+                    })
+                };
+                settle(&self.laws, &response, times, first, ask, name)
+            })
+        };
+        // Where the other does not settle, or this one not from there, it begins without forces.
+        let beside = self.beside.as_ref().and_then(|other| other.forces_in(run));
+        if let Some(Ok(settled)) = beside.map(|first| from(first, inputs.clone())) {
+            return Ok(settled);
+        }
+        from(vec![vec![0.0; run.len]; self.ports.len()], inputs)
+    }
+
+    /// The forces at the ports in a run, where they settle.
+    pub(crate) fn forces(&self, run: &Run, inputs: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
+        let settled = self.settled(run, inputs).ok()?;
+        Some(settled.forces.clone())
     }
 }

@@ -84,6 +84,11 @@ impl Simulator {
         self.through_maps(run, predicted, keep)
     }
 
+    /// The forces at the ports of a simulator of the user's, where they settle.
+    pub(crate) fn forces_in(&self, run: &Run) -> Option<Vec<Vec<f64>>> {
+        self.outside.as_ref()?.forces(run, self.own_inputs(run))
+    }
+
     fn own_inputs(&self, run: &Run) -> Vec<Vec<f64>> {
         let inputs = self.inputs(run).into_iter();
         inputs.map(std::borrow::Cow::into_owned).collect()

@@ -40,6 +40,8 @@ pub(crate) struct Response {
     pub(crate) lag: usize,
     /// Displacement and velocity of each port among the outputs.
     pub(crate) ports: Vec<[usize; 2]>,
+    /// The run that it was measured about, without forces.
+    pub(crate) at_rest: Answer,
     /// Transforms of the response of the motion of each port from its lag on, by octave, then by port that pushes, then port
     /// and displacement or velocity.
     octaves: Vec<Octave>,
@@ -88,6 +90,7 @@ impl Response {
             unit,
             lag,
             ports: ports.to_vec(),
+            at_rest,
             octaves: vec![],
             whole: Whole::new(still.len),
         };

@@ -160,6 +160,16 @@ impl Simulator {
         })
     }
 
+    /// Begins to bring forces and motion of a simulator of the user's together where they have settled in `other`, whose values are
+    /// nearly the same: it is asked less often. Nothing changes elsewhere.
+    #[must_use]
+    pub fn beside(mut self, other: &Arc<Simulator>) -> Simulator {
+        if let Some(outside) = &mut self.outside {
+            outside.begin_beside(other);
+        }
+        self
+    }
+
     /// A model file with the effects it lists.
     ///
     /// # Errors

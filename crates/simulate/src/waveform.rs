@@ -35,7 +35,16 @@ pub(crate) struct Times {
     pub(crate) len: usize,
 }
 
-/// What the simulator says with the forces of the laws in it, one signal for each output.
+/// Forces that agree with the motion they make, and what the simulator says with them in it.
+pub(crate) struct Settled {
+    /// One signal for each output.
+    pub(crate) outputs: Vec<Vec<f64>>,
+    /// What the simulator was last asked with, by port.
+    pub(crate) forces: Vec<Vec<f64>>,
+}
+
+/// What the simulator says with the forces of the laws in it. Where it begins (`forces`) decides how often it is asked, and
+/// nothing beyond the accuracy of the answer.
 ///
 /// # Errors
 /// [`PlantError::Unsettled`], and those of the simulator.
@@ -43,18 +52,17 @@ pub(crate) fn settle(
     laws: &[PortLaw],
     response: &Response,
     times: Times,
+    mut forces: Vec<Vec<f64>>,
     ask: impl Fn(&[Vec<f64>]) -> Result<Answer, PlantError>,
     name: impl Fn(usize) -> String,
-) -> Result<Vec<Vec<f64>>, PlantError> {
-    let mut forces = vec![vec![0.0; times.len]; response.ports.len()];
-    let nominal = ask(&forces)?;
-    let mut answer = Answer::clone(&nominal);
+) -> Result<Settled, PlantError> {
+    let mut answer = ask(&forces)?;
     let mut apart = (0, f64::INFINITY);
     for call in 0..MOST_CALLS {
         let mut march = March::new(laws, response, times, &answer, &forces);
         let stretch = BLOCK << response.octave_of(march.steps);
         march.solve(0, stretch);
-        if let Some(port) = march.runs_away(&nominal) {
+        if let Some(port) = march.runs_away(&response.at_rest) {
             return Err(PlantError::RunsAway { port: name(port) });
         }
         apart = far(&march.motion, response, &answer);
@@ -65,7 +73,7 @@ pub(crate) fn settle(
         if apart.1 <= enough {
             let mut outputs = answer.to_vec();
             response.add_beyond(&march.change, &mut outputs);
-            return Ok(outputs);
+            return Ok(Settled { outputs, forces });
         }
         let (change, motion) = (march.change, march.motion);
         for (force, change) in forces.iter_mut().zip(&change) {
@@ -77,7 +85,8 @@ pub(crate) fn settle(
         answer = ask(&forces)?;
         // Where the simulator is linear the march has said it all.
         if far(&motion, response, &answer).1 <= SAME {
-            return Ok(answer.to_vec());
+            let outputs = answer.to_vec();
+            return Ok(Settled { outputs, forces });
         }
     }
     Err(PlantError::Unsettled {

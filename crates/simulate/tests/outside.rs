@@ -248,6 +248,71 @@ fn verify_forces_settle_where_the_plant_is_not_linear() {
     assert!(found < HELD, "{found}");
 }
 
+/// Values a difference away begin where the forces have settled: fewer questions, and the same answer to what is left when forces
+/// and motion agree (1e-5 of the range).
+#[test]
+fn verify_a_simulator_beside_another_is_asked_less_often() {
+    let outside = Model::from_toml(OUTSIDE).unwrap();
+    let run = run(&outside);
+    let laws = |friction: f64, factor: f64| {
+        let mass = Location::Parameter("mass".into());
+        [
+            placed("coulomb_friction", at_joint(), &[friction]),
+            placed("parameter_error", mass, &[factor]),
+        ]
+    };
+    for (friction, factor) in [(2.0002, 1.0), (2.0, 1.0001)] {
+        let (plant, calls) = table(6e5);
+        let of = |friction, factor| {
+            Simulator::with_plant(&outside, &laws(friction, factor), 1, Some(&plant)).unwrap()
+        };
+        let here = Arc::new(of(2.0, 1.0));
+        here.predict(&run, &[]).unwrap();
+        let before = calls.load(Ordering::Relaxed);
+        let beside = of(friction, factor).beside(&here);
+        let near = beside.predict(&run, &[]).unwrap().swap_remove(0);
+        let between = calls.load(Ordering::Relaxed);
+        let alone = of(friction, factor).predict(&run, &[]).unwrap();
+        let after = calls.load(Ordering::Relaxed);
+        let (asked, needed) = (between - before, after - between);
+        assert!(2 * asked <= needed, "{asked} questions, alone {needed}");
+        let found = apart(&[alone[0].clone(), near]);
+        assert!(found < 1e-5, "{found}");
+    }
+}
+
+/// A table that takes its time.
+struct Slow(Table);
+
+impl Plant for Slow {
+    fn simulate(&self, run: &PlantRun<'_>) -> Result<Vec<Vec<f64>>, PlantError> {
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        self.0.simulate(run)
+    }
+}
+
+#[test]
+fn verify_an_equal_question_at_the_same_time_waits_for_the_answer() {
+    let outside = Model::from_toml(OUTSIDE).unwrap();
+    let calls = Arc::new(AtomicUsize::new(0));
+    let plant = ExternalPlant::new(Slow(Table {
+        bend: 0.0,
+        calls: Arc::clone(&calls),
+    }));
+    let run = run(&outside);
+    let together = std::sync::Barrier::new(4);
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                let simulator = Simulator::with_plant(&outside, &[], 1, Some(&plant)).unwrap();
+                together.wait();
+                simulator.predict(&run, &[]).unwrap();
+            });
+        }
+    });
+    assert_eq!(calls.load(Ordering::Relaxed), 1);
+}
+
 #[test]
 fn verify_parameters_reach_the_plant_and_answers_are_kept() {
     let outside = Model::from_toml(OUTSIDE).unwrap();
