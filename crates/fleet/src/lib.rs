@@ -36,6 +36,6 @@ pub use plan::{MachineEntry, Plan, SCHEMA};
 pub use prior::NominalOfFleet;
 pub use report::{Fleet, ModelOfFleet, report};
 pub use row::{FIXED_COLUMNS, Role, Row};
-pub use run::{Counts, Done, answer_alone, resumed, run};
+pub use run::{Counts, Done, answer_alone, longest_first, resumed, run};
 pub use table::{Table, encode};
 pub use unit::{Unit, units};

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use simgap_diagnose::Cancel;
@@ -146,6 +147,32 @@ fn verify_a_fleet_is_told_and_a_killed_run_goes_on() {
         "{:#?}",
         told.findings
     );
+}
+
+/// Of two workers one would wait at the end for a long record that begins last.
+#[test]
+fn verify_the_longest_records_begin_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let fleet = Fleet {
+        machines: 1,
+        days: 4,
+        growing: vec![],
+        loosening: 9,
+        wrong_day: 9,
+        ..Fleet::whole()
+    };
+    fleet.write(folder.path()).unwrap();
+    let (_, units) = planned(folder.path());
+    // What cannot be read is a failure at once; only its length counts.
+    for (unit, len) in units.iter().zip([100, 300, 100, 400]) {
+        std::fs::write(&unit.train[0], "x".repeat(len)).unwrap();
+    }
+    let order = Mutex::new(vec![]);
+    let tell = |unit: &Unit, _| order.lock().unwrap().push(unit.date.clone());
+    let out = folder.path().join("result");
+    run(&units, &out, 1, &Cancel::default(), &tell).unwrap();
+    let wanted = [3, 1, 0, 2].map(|k: usize| units[k].date.clone());
+    assert_eq!(order.into_inner().unwrap(), wanted);
 }
 
 /// A unit that fails is a row with its reason, without folders; a record that is mended is diagnosed again.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use simgap_fleet::{
-    FleetError, Plan, Table, Unit, answer_alone, is_remote, report, resumed, units,
+    FleetError, Plan, Table, Unit, answer_alone, is_remote, longest_first, report, resumed, units,
 };
 
 use crate::error::refused;
@@ -26,7 +26,7 @@ pub(crate) fn fleet_places(plan: PathBuf) -> PyResult<Vec<String>> {
     Ok(remote.map(|pattern| pattern.glob()).collect())
 }
 
-/// The units of a plan as JSON, with what the table in `out` knows already.
+/// The units of a plan as JSON, the longest first, with what the table in `out` knows already.
 #[pyfunction]
 #[pyo3(signature = (plan, listed, out))]
 pub(crate) fn fleet_units(
@@ -38,8 +38,8 @@ pub(crate) fn fleet_units(
     py.detach(|| {
         let plan = Plan::read(&plan)?;
         let units = resumed(&units(&plan, Some(&listed))?, &out);
-        units
-            .iter()
+        let order = longest_first(&units).into_iter();
+        order
             .map(Unit::to_json)
             .collect::<Result<Vec<String>, FleetError>>()
     })
