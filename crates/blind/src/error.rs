@@ -29,6 +29,16 @@ pub enum BlindError {
         /// What there is.
         known: String,
     },
+    /// A recipe names a kind that no plant which is drawn here has a place for.
+    #[error(
+        "recipe \"{found}\": a kind of the simulators of users, no drawn machine has a place for it; needed is one of: {drawn}"
+    )]
+    NoPlant {
+        /// As asked for.
+        found: String,
+        /// What can be drawn.
+        drawn: String,
+    },
     /// No plant, place and size was found at which the effect matters and can be reproduced.
     #[error(
         "case {number}, recipe \"{recipe}\": none of {attempts} draws has an effect of the needed size"

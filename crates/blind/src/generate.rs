@@ -1,6 +1,6 @@
 //! From a seed and a recipe to a case.
 
-use simgap_effects::{Effect, Family, Placed, SiteKind, equivalents_beside};
+use simgap_effects::{Effect, Family, Placed, SiteKind, equivalents_beside, sites};
 use simgap_record::{Channel, Record};
 
 use crate::accept::accept;
@@ -11,13 +11,15 @@ use crate::excitation::{self, Range, Signal};
 use crate::gap::std;
 use crate::plant::{self, Plant, input_unit, output_unit};
 use crate::random::Random;
-use crate::recipe::known_kinds;
+use crate::recipe::{is_drawn, known_kinds};
 use crate::{BlindError, Level, Recipe};
 
 /// Samples of a record, lowest and highest draw.
 const SAMPLES: [f64; 2] = [1000.0, 6000.0];
 /// Draws before a recipe is given up.
 const ATTEMPTS: u64 = 400;
+/// Plants drawn until one has a place for the effects.
+const PLANTS: usize = 400;
 
 /// Generates the case of a number in the campaign of a seed. The same arguments give the same
 /// case to the last bit.
@@ -27,8 +29,8 @@ const ATTEMPTS: u64 = 400;
 /// parameter is off within the tolerance of the level, but for [`Recipe::Noise`].
 ///
 /// # Errors
-/// [`BlindError::UnknownKind`] for a recipe of an unknown kind, [`BlindError::NoCase`] when the
-/// kind never matters on any plant drawn.
+/// [`BlindError::UnknownKind`] for a recipe of an unknown kind, [`BlindError::NoPlant`] for one that no drawn machine has,
+/// [`BlindError::NoCase`] when the kind never matters on any plant drawn.
 ///
 /// ```
 /// use simgap_blind::{Level, Recipe, Status, generate};
@@ -64,7 +66,10 @@ fn wanted(recipe: &Recipe) -> Result<Vec<&'static dyn Effect>, BlindError> {
         found: found.clone(),
         known: known_kinds(),
     };
-    let known = |kind: &String| known(kind).ok_or_else(|| unknown(kind));
+    let known = |kind: &String| {
+        is_drawn(kind)?;
+        known(kind).ok_or_else(|| unknown(kind))
+    };
     Ok(match recipe {
         Recipe::Noise | Recipe::SmallErrors | Recipe::TwoParameters => vec![],
         Recipe::Kind(kind) | Recipe::Foreign(kind) => vec![known(kind)?],
@@ -79,11 +84,8 @@ pub(crate) fn draft(
     wanted: &[&'static dyn Effect],
     level: Level,
 ) -> Result<Option<Draft>, BlindError> {
-    let is_hydraulic =
-        |effect: &&dyn Effect| matches!(effect.site(), SiteKind::Chambers | SiteKind::Spool);
-    let plant = match wanted.iter().any(is_hydraulic) {
-        true => plant::draw_hydraulic(random)?,
-        false => plant::draw(random)?,
+    let Some(plant) = plant_for(random, wanted)? else {
+        return Ok(None);
     };
     let benches = benches(random, &plant);
     let [least, most] = level.noise_share();
@@ -115,6 +117,27 @@ pub(crate) fn draft(
     }
     let accepted = accept(&mut draft, &base)?;
     Ok(accepted.then_some(draft))
+}
+
+/// A plant with a place for each of the effects: of eighteen plants one has a pendulum, and of sixty one has a weight.
+fn plant_for(
+    random: &mut Random,
+    wanted: &[&'static dyn Effect],
+) -> Result<Option<Plant>, BlindError> {
+    let is_hydraulic =
+        |effect: &&dyn Effect| matches!(effect.site(), SiteKind::Chambers | SiteKind::Spool);
+    for _ in 0..PLANTS {
+        let plant = match wanted.iter().any(is_hydraulic) {
+            true => plant::draw_hydraulic(random)?,
+            false => plant::draw(random)?,
+        };
+        let has_place =
+            |effect: &&'static dyn Effect| !sites(&plant.model, effect.site()).is_empty();
+        if wanted.iter().all(has_place) {
+            return Ok(Some(plant));
+        }
+    }
+    Ok(None)
 }
 
 fn benches(random: &mut Random, plant: &Plant) -> Vec<Bench> {

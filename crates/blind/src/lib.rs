@@ -59,7 +59,7 @@ pub use foreign::foreign_effects;
 pub use generate::generate;
 pub use level::Level;
 pub use outcome::{Outcome, Verdict};
-pub use recipe::{Recipe, schedule};
+pub use recipe::{Recipe, drawn_kinds, schedule};
 pub use score::{First, Role, Score, score};
 pub use seal::{SealedCase, open, seal, sha256};
 pub use table::{

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use simgap_effects::{Family, catalogue, find};
+use simgap_effects::{Family, SiteKind, catalogue, find};
 
 use crate::BlindError;
 use crate::random::Random;
@@ -49,7 +49,7 @@ impl fmt::Display for Recipe {
 /// `two_parameters`, `pair` and `foreign` are accepted as well).
 ///
 /// # Errors
-/// [`BlindError::UnknownKind`] for a kind that does not exist.
+/// [`BlindError::UnknownKind`] for a kind that does not exist, [`BlindError::NoPlant`] for one that no drawn machine has.
 ///
 /// ```
 /// let recipes = simgap_blind::schedule(1, 40, &[])?;
@@ -78,7 +78,10 @@ pub fn schedule(seed: u64, count: usize, only: &[String]) -> Result<Vec<Recipe>,
                 "two_parameters" => Recipe::TwoParameters,
                 "pair" => lists.pair(&mut random),
                 "foreign" => Recipe::Foreign(lists.foreign.next()),
-                kind if find(kind).is_some() => Recipe::Kind(kind.to_string()),
+                kind if find(kind).is_some() => {
+                    is_drawn(kind)?;
+                    Recipe::Kind(kind.to_string())
+                }
                 kind if lists.foreign.kinds.iter().any(|known| known == kind) => {
                     Recipe::Foreign(kind.to_string())
                 }
@@ -106,6 +109,32 @@ pub(crate) fn known_kinds() -> String {
         .chain(catalogue().iter().map(|effect| effect.kind()))
         .collect::<Vec<_>>()
         .join(", ")
+}
+
+/// The kinds of the catalogue of which a case can be drawn. A parameter of a simulator of the user's (`parameter_error`)
+/// is none: every machine that is drawn here is made of masses and members or of a hydraulic axis, and has no such parameter.
+///
+/// ```
+/// let kinds = simgap_blind::drawn_kinds();
+/// assert!(kinds.contains(&"bulk_modulus") && !kinds.contains(&"parameter_error"));
+/// ```
+#[must_use]
+pub fn drawn_kinds() -> Vec<&'static str> {
+    let drawn = catalogue().iter();
+    let drawn = drawn.filter(|effect| effect.site() != SiteKind::Parameter);
+    drawn.map(|effect| effect.kind()).collect()
+}
+
+/// Refuses a kind of the catalogue that no machine which is drawn here has a place for.
+pub(crate) fn is_drawn(kind: &str) -> Result<(), BlindError> {
+    let drawn = drawn_kinds();
+    match find(kind).is_some() && !drawn.contains(&kind) {
+        true => Err(BlindError::NoPlant {
+            found: kind.to_string(),
+            drawn: drawn.join(", "),
+        }),
+        false => Ok(()),
+    }
 }
 
 /// A shuffled list that is gone through again and again.
@@ -180,6 +209,17 @@ mod tests {
         assert_eq!(recipes, schedule(3, 300, &[])?);
         assert_ne!(recipes, schedule(4, 300, &[])?);
         Ok(())
+    }
+
+    #[test]
+    fn verify_a_kind_that_no_machine_has_is_refused() {
+        let message = schedule(1, 3, &["parameter_error".to_string()])
+            .err()
+            .map(|error| error.to_string())
+            .unwrap_or_default();
+        let needed = "recipe \"parameter_error\": a kind of the simulators of users, no drawn machine has a place for it; \
+            needed is one of: mass_error, ";
+        assert!(message.starts_with(needed), "{message}");
     }
 
     #[test]

@@ -25,7 +25,7 @@ pub struct Args {
     /// Further cases of this kind, diagnosed with the kind taken out of the catalogue; repeatable.
     #[arg(long, value_name = "KIND")]
     pub withhold: Vec<String>,
-    /// The same for every kind of the catalogue.
+    /// The same for every kind of the catalogue that a drawn machine can have.
     #[arg(long)]
     pub withhold_each: bool,
     /// Cases for each kind that is withheld.

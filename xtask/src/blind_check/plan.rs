@@ -1,7 +1,6 @@
 //! What a campaign holds.
 
-use simgap_blind::{Level, Recipe, schedule};
-use simgap_effects::{catalogue, find};
+use simgap_blind::{Level, Recipe, drawn_kinds, schedule};
 
 use super::{Args, BlindCheckError};
 
@@ -94,16 +93,59 @@ fn numbered(all: Vec<Unnumbered>) -> Vec<Planned> {
 fn withheld(args: &Args) -> Result<Vec<String>, BlindCheckError> {
     let mut kinds: Vec<String> = vec![];
     for kind in &args.withhold {
-        if find(kind).is_none() {
+        if !drawn_kinds().contains(&kind.as_str()) {
             // Its message lists what there is.
             schedule(args.seed, 1, std::slice::from_ref(kind))?;
         }
         kinds.push(kind.clone());
     }
     if args.withhold_each {
-        kinds.extend(catalogue().iter().map(|effect| effect.kind().to_string()));
+        kinds.extend(drawn_kinds().into_iter().map(str::to_string));
     }
     kinds.sort();
     kinds.dedup();
     Ok(kinds)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Cli {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn planned(words: &[&str]) -> Result<Vec<Planned>, BlindCheckError> {
+        let words = ["blind-check", "--cases", "0"].iter().chain(words);
+        plan(&Cli::parse_from(words).args)
+    }
+
+    #[test]
+    fn verify_every_kind_that_is_withheld_can_be_drawn() -> Result<(), BlindCheckError> {
+        let planned = planned(&["--withhold-each"])?;
+        let withheld: Vec<&str> = planned
+            .iter()
+            .filter_map(|p| p.withheld.as_deref())
+            .collect();
+        let mut drawn = drawn_kinds();
+        drawn.sort_unstable();
+        assert_eq!(withheld, drawn);
+        assert!(!withheld.contains(&"parameter_error"));
+        Ok(())
+    }
+
+    #[test]
+    fn verify_a_kind_that_no_machine_has_cannot_be_withheld() {
+        let refused = planned(&["--withhold", "parameter_error"]);
+        let message = refused.err().map(|error| error.to_string());
+        let message = message.unwrap_or_default();
+        assert!(
+            message.starts_with("recipe \"parameter_error\""),
+            "{message}"
+        );
+    }
 }
