@@ -200,13 +200,12 @@ impl<'a> Search<'a> {
         fitted
     }
 
-    /// Whether nothing that could make the best set likelier can be added to it. One that has no room for more, and leaves more than
-    /// noise, does not end the search: what is smaller may grow into a better one.
+    /// Whether nothing can be added to the best set, or nothing that could make it likelier.
     fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        if self.is_spent() {
+        if self.is_spent() || self.is_full(best) {
             return Ok(true);
         }
         let left = best.fit.variance.iter().zip(self.unexplainable(best));
