@@ -11,10 +11,13 @@ use crate::plant::{Key, PlantError, PlantRun};
 use crate::port_law::{Member, PortLaw};
 use crate::response::Answer;
 use crate::waveform::{Settled, Times, settle};
-use crate::{Run, SimulateError, Simulator};
+use crate::{Run, SimulateError};
 
 /// What came out of a run, once somebody has asked.
 type Place = Arc<Mutex<Option<Result<Arc<Settled>, PlantError>>>>;
+
+/// Forces at the ports in a run, by port, where somebody knows them.
+type ForcesIn = Box<dyn Fn(&Run) -> Option<Vec<Vec<f64>>> + Send + Sync>;
 
 /// A simulator with its parameters and the laws at its ports.
 pub(crate) struct Outside {
@@ -30,8 +33,8 @@ pub(crate) struct Outside {
     /// Name of each port, and its displacement and velocity among the outputs.
     ports: Vec<(String, [usize; 2])>,
     laws: Vec<PortLaw>,
-    /// A simulator whose forces are nearly those of this one.
-    beside: Option<Arc<Simulator>>,
+    /// The forces of a simulator in which they are nearly those of this one.
+    beside: Option<ForcesIn>,
     /// What came out of each run.
     settled: Mutex<HashMap<Key, Place>>,
 }
@@ -106,12 +109,13 @@ impl Outside {
         })
     }
 
+    pub(crate) fn has_laws(&self) -> bool {
+        !self.laws.is_empty()
+    }
+
     /// Begins where the forces of another have settled.
-    pub(crate) fn begin_beside(&mut self, other: &Arc<Simulator>) {
-        let has_laws = |outside: &Outside| !outside.laws.is_empty();
-        if has_laws(self) && other.outside.as_ref().is_some_and(has_laws) {
-            self.beside = Some(Arc::clone(other));
-        }
+    pub(crate) fn begin_beside(&mut self, forces: ForcesIn) {
+        self.beside = Some(forces);
     }
 
     /// The outputs of the model under inputs, before their maps.
@@ -263,7 +267,7 @@ impl Outside {
             })
         };
         // Where the other does not settle, or this one not from there, it begins without forces.
-        let beside = self.beside.as_ref().and_then(|other| other.forces_in(run));
+        let beside = self.beside.as_ref().and_then(|forces_in| forces_in(run));
         if let Some(Ok(settled)) = beside.map(|first| from(first, inputs.clone())) {
             return Ok(settled);
         }

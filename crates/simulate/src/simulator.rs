@@ -164,8 +164,14 @@ impl Simulator {
     /// nearly the same: it is asked less often. Nothing changes elsewhere.
     #[must_use]
     pub fn beside(mut self, other: &Arc<Simulator>) -> Simulator {
-        if let Some(outside) = &mut self.outside {
-            outside.begin_beside(other);
+        let has_laws = other.outside.as_ref().is_some_and(Outside::has_laws);
+        if let Some(outside) = self
+            .outside
+            .as_mut()
+            .filter(|own| has_laws && own.has_laws())
+        {
+            let other = Arc::clone(other);
+            outside.begin_beside(Box::new(move |run| other.forces_in(run)));
         }
         self
     }

@@ -2,11 +2,8 @@
 
 use pulp::{Arch, Simd};
 
-use super::block::{Block, less_products};
-use super::secant::Secant;
-use super::wide::{Which, Wide};
-use super::{Mask, Pack};
-use crate::exact::secant::FORCE_TOLERANCE;
+use super::Pack;
+use super::wide::Wide;
 
 /// One law with the parameters of eight sets. Made by [`gather`](super::gather), or lane by lane for laws that
 /// do not offer [`ForceLaw::lanes`](crate::exact::ForceLaw::lanes).
@@ -72,84 +69,5 @@ impl JointLanes {
         let (five, ten) = (Wide::splat(simd, 5.0), Wide::splat(simd, 10.0));
         self.smooth = (five * (now - s3) - ten * (s1 - s2) + s4).pack();
         self.before = [now.pack(), s1.pack(), s2.pack(), s3.pack()];
-    }
-}
-
-impl Block<'_> {
-    /// Updates S and D of one joint of the open sets with the others held; the sets that did not stay where they were.
-    #[inline(always)]
-    pub(super) fn solve_joint<S: Simd>(&mut self, simd: S, k: usize, open: &Mask) -> Mask {
-        let without = self.without(simd, k);
-        let open = Which::of(simd, open);
-        let joint = &self.joints[k];
-        let [old_smooth, old_dry] =
-            [&joint.smooth, &joint.dry_force].map(|pack| Wide::of(simd, pack));
-        let gain = Wide::of(simd, &joint.gain);
-        let mut force = self.act(simd, k, &without, old_smooth);
-        let mut secant = Secant::begin(open, old_smooth, force, gain);
-        while secant.is_open() {
-            force = self.act(simd, k, &without, secant.tried);
-            secant.step(force);
-        }
-        let smooth = secant.smooth;
-        let first = self.places[k].elements[0];
-        let part = Wide::of(simd, &self.trial[first]) + (smooth - force);
-        self.trial[first] = part.pack();
-        for &i in &self.places[k].elements {
-            open.put(Wide::of(simd, &self.trial[i]), &mut self.part[i]);
-        }
-        let joint = &mut self.joints[k];
-        let give_velocity = Wide::of(simd, &joint.compliance[1]);
-        let moved = give_velocity * (smooth - secant.tried);
-        let [mean, end, stiffness] = joint.dry.each_ref().map(|pack| Wide::of(simd, pack));
-        let dry_force = mean - stiffness * moved;
-        let dry_give = Wide::of(simd, &joint.dry_compliance[1]);
-        let velocity = Wide::of(simd, &without[1]) - dry_give * dry_force - give_velocity * smooth;
-        open.put(end - stiffness * moved, &mut joint.dry_end);
-        open.put(velocity, &mut joint.end_velocity);
-        open.put(smooth, &mut joint.smooth);
-        open.put(dry_force, &mut joint.dry_force);
-        open.put(secant.kept_gain(), &mut joint.gain);
-        let change = (smooth - old_smooth).abs() + (dry_force - old_dry).abs();
-        let tolerance = Wide::splat(simd, FORCE_TOLERANCE);
-        let settled = change.is_at_most(tolerance * (smooth.abs() + dry_force.abs()));
-        (open & !settled).mask()
-    }
-
-    /// Motion across a joint at the end of the step without its own forces.
-    #[inline(always)]
-    fn without<S: Simd>(&self, simd: S, k: usize) -> [Pack; 2] {
-        let m = self.joints.len();
-        let [mut displacement, mut velocity] = self.free[k];
-        let [x, v, dry_x, dry_v] = &self.compliance;
-        for j in (0..m).filter(|&j| j != k) {
-            let (entry, other) = (k * m + j, &self.joints[j]);
-            let forces = [&other.smooth, &other.dry_force];
-            let (xs, vs) = ([&x[entry], forces[0]], [&v[entry], forces[0]]);
-            displacement = less_products(simd, &displacement, xs, [&dry_x[entry], forces[1]]);
-            velocity = less_products(simd, &velocity, vs, [&dry_v[entry], forces[1]]);
-        }
-        [displacement, velocity]
-    }
-
-    /// What the laws of a joint say where S is `smooth`: S, and D, which the joint keeps.
-    #[inline(always)]
-    fn act<S: Simd>(&mut self, simd: S, k: usize, without: &[Pack; 2], smooth: Wide<S>) -> Wide<S> {
-        let joint = &mut self.joints[k];
-        let [give, give_velocity] = [0, 1].map(|i| Wide::of(simd, &joint.compliance[i]));
-        let [displacement, velocity] = [0, 1].map(|i| Wide::of(simd, &without[i]));
-        joint.displacement = (displacement - give * smooth).pack();
-        joint.velocity = (velocity - give_velocity * smooth).pack();
-        let mut sum = Wide::zero(simd);
-        for (place, &i) in self.places[k].elements.iter().enumerate() {
-            let is = Acting {
-                dry: place == 0 && self.places[k].dry,
-                remembering: self.places[k].remembers == Some(i),
-            };
-            self.laws[i].act(self.arch, is, joint);
-            self.trial[i] = joint.force;
-            sum += Wide::of(simd, &joint.force);
-        }
-        sum
     }
 }

@@ -22,6 +22,7 @@ mod set;
 mod solve;
 mod source;
 mod together;
+mod trial;
 mod wide;
 
 pub use batch::{Batch, LaneObserver, LaneSnapshot};
