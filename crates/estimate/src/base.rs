@@ -5,7 +5,7 @@ use std::sync::Arc;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, Side};
 use simgap_effects::Placed;
-use simgap_simulate::Job;
+use simgap_simulate::{Job, Simulator};
 
 use crate::fit::{Known, fit_with};
 use crate::gram::{Gram, grams};
@@ -36,6 +36,8 @@ pub struct Base<'a> {
     /// Products of its sensitivities, run by run.
     grams: Vec<Gram>,
     reach: Reach,
+    /// Of each run; trials begin where these have settled.
+    simulators: Vec<Arc<Simulator>>,
     pub(crate) weights: Vec<f64>,
     /// Of H; without where nothing may be adjusted.
     factor: Option<PartialPivLu<f64>>,
@@ -140,6 +142,7 @@ pub fn linearise_at<'a>(
         .map(|(c, rho)| rho * problem.filled_count(c));
     let squared = |run: &Signals| inner(run, run, &channel_weights);
     let energy = at.discrepancy.iter().map(squared).sum();
+    let placed: Vec<Placed> = fit.estimate.placed().cloned().collect();
     Ok(Base {
         energy,
         problem,
@@ -148,6 +151,7 @@ pub fn linearise_at<'a>(
         at,
         grams,
         reach: Reach::of(problem, &fit.estimate.effects),
+        simulators: problem.simulators(&placed, &[])?,
         weights: channel_weights,
         factor: factorise(&hessian),
         gradient,
@@ -202,12 +206,10 @@ impl Base<'_> {
         let estimate = &self.fit.estimate;
         let runs = self.problem.runs.len();
         let mut simulators = Vec::with_capacity(trials.len() * runs);
-        let base: Vec<Placed> = estimate.placed().cloned().collect();
-        let here = self.problem.simulators(&base, None)?;
         for (values, _) in trials {
             let trial = Placed::new(candidate.effect, candidate.at.clone(), values.clone());
             let effects: Vec<Placed> = estimate.placed().chain([&trial]).cloned().collect();
-            simulators.extend(self.problem.simulators(&effects, Some(&here))?);
+            simulators.extend(self.problem.simulators(&effects, &self.simulators)?);
         }
         let jobs: Vec<Job<'_>> = simulators
             .iter()

@@ -65,10 +65,7 @@ impl<'a> Simulators<'a> {
         }
         let placed = self.layout.placed_in(theta, run);
         let simulator = self.problem.simulator(&placed, run)?;
-        let simulator = Arc::new(match beside {
-            Some(other) => simulator.beside(other),
-            None => simulator,
-        });
+        let simulator = Arc::new(simulator.beside(beside));
         self.known.insert(key, Arc::clone(&simulator));
         Ok(simulator)
     }

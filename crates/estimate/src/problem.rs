@@ -172,7 +172,7 @@ impl Problem {
     pub(crate) fn simulators(
         &self,
         effects: &[Placed],
-        others: Option<&[Arc<Simulator>]>,
+        others: &[Arc<Simulator>],
     ) -> Result<Vec<Arc<Simulator>>, EstimateError> {
         let mut all = self.given.iter().chain(effects);
         let differ = all.any(|placed| !placed.of_record.is_empty());
@@ -180,13 +180,7 @@ impl Problem {
         for run in 0..self.runs.len() {
             let simulator = match simulators.first() {
                 Some(first) if !differ => Arc::clone(first),
-                _ => {
-                    let simulator = self.simulator(effects, run)?;
-                    Arc::new(match others.and_then(|others| others.get(run)) {
-                        Some(other) => simulator.beside(other),
-                        None => simulator,
-                    })
-                }
+                _ => Arc::new(self.simulator(effects, run)?.beside(others.get(run))),
             };
             simulators.push(simulator);
         }

@@ -146,7 +146,7 @@ impl Line<'_> {
         let next = self.moved(theta, &step);
         let promised = quadratic.promised(&self.between(theta, &next));
         // A simulator of the user's has no lanes: what the next step wants waits until the point is taken.
-        let has_lanes = self.merit.problem.may_cut();
+        let has_lanes = !self.merit.problem.model.is_external();
         let along = |run, place| has_lanes && along(run, place);
         let probe = probe(self.merit.problem, self.layout, &next, along).ok()?;
         let next = self.judged(next, probe);

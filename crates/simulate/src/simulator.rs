@@ -160,17 +160,13 @@ impl Simulator {
         })
     }
 
-    /// Begins to bring forces and motion of a simulator of the user's together where they have settled in `other`, whose values are
-    /// nearly the same: it is asked less often. Nothing changes elsewhere.
+    /// Begins to bring forces and motion of a simulator of the user's together where they have settled in `other`, if there is one, whose
+    /// values are nearly the same: it is asked less often. Nothing changes elsewhere.
     #[must_use]
-    pub fn beside(mut self, other: &Arc<Simulator>) -> Simulator {
-        let has_laws = other.outside.as_ref().is_some_and(Outside::has_laws);
-        if let Some(outside) = self
-            .outside
-            .as_mut()
-            .filter(|own| has_laws && own.has_laws())
-        {
-            let other = Arc::clone(other);
+    pub fn beside(mut self, other: Option<&Arc<Simulator>>) -> Simulator {
+        let has_laws = |of: &Simulator| of.outside.as_ref().is_some_and(Outside::has_laws);
+        let other = other.filter(|other| has_laws(other) && has_laws(&self));
+        if let (Some(outside), Some(other)) = (&mut self.outside, other.cloned()) {
             outside.begin_beside(Box::new(move |run| other.forces_in(run)));
         }
         self

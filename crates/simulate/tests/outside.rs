@@ -269,7 +269,7 @@ fn verify_a_simulator_beside_another_is_asked_less_often() {
         let here = Arc::new(of(2.0, 1.0));
         here.predict(&run, &[]).unwrap();
         let before = calls.load(Ordering::Relaxed);
-        let beside = of(friction, factor).beside(&here);
+        let beside = of(friction, factor).beside(Some(&here));
         let near = beside.predict(&run, &[]).unwrap().swap_remove(0);
         let between = calls.load(Ordering::Relaxed);
         let alone = of(friction, factor).predict(&run, &[]).unwrap();

@@ -283,18 +283,25 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// Commits the memory of a joint at the end of a step, with the others where they settled.
-    fn remember(&mut self, k: usize, element: usize, time_s: f64) {
+    /// Motion across a joint at the end of the step under the forces of some joints.
+    #[inline(always)]
+    pub(super) fn motion_under(&self, k: usize, acts: impl Fn(usize) -> bool) -> [f64; 2] {
         let m = self.joints.len();
         let c = &self.compliance;
-        let mut displacement = self.free_displacement[k];
-        for j in 0..m {
+        let (mut displacement, mut velocity) = (self.free_displacement[k], self.free_velocity[k]);
+        for j in (0..m).filter(|&j| acts(j)) {
             let entry = k * m + j;
-            displacement -= c.displacement[entry] * self.smooth[j]
-                + c.dry_displacement[entry] * self.dry_force[j];
+            let (smooth, dry) = (self.smooth[j], self.dry_force[j]);
+            displacement -= c.displacement[entry] * smooth + c.dry_displacement[entry] * dry;
+            velocity -= c.velocity[entry] * smooth + c.dry_velocity[entry] * dry;
         }
+        [displacement, velocity]
+    }
+
+    /// Commits the memory of a joint at the end of a step, with the others where they settled.
+    fn remember(&mut self, k: usize, element: usize, time_s: f64) {
         let to = MemberMotion {
-            displacement,
+            displacement: self.motion_under(k, |_| true)[0],
             velocity: self.end_velocity[k],
             time_s,
             step_s: self.propagator.time_step_s,
@@ -311,17 +318,10 @@ impl<'a> Plant<'a> {
     fn solve_joint(&mut self, k: usize, time_s: f64) -> bool {
         let m = self.joints.len();
         let c = &self.compliance;
-        let (mut displacement, mut velocity) = (self.free_displacement[k], self.free_velocity[k]);
-        for j in (0..m).filter(|&j| j != k) {
-            let entry = k * m + j;
-            displacement -= c.displacement[entry] * self.smooth[j]
-                + c.dry_displacement[entry] * self.dry_force[j];
-            velocity -=
-                c.velocity[entry] * self.smooth[j] + c.dry_velocity[entry] * self.dry_force[j];
-        }
+        let without = self.motion_under(k, |j| j != k);
         let own = k * m + k;
         let trial = Trial {
-            without: [displacement, velocity],
+            without,
             compliance: [c.displacement[own], c.velocity[own]],
             dry_compliance: [c.dry_displacement[own], c.dry_velocity[own]],
             time_s,
@@ -342,7 +342,7 @@ impl<'a> Plant<'a> {
         self.dry_end[k] = dry.end - dry.stiffness * moved;
         let [_, give] = trial.compliance;
         let [_, dry_give] = trial.dry_compliance;
-        self.end_velocity[k] = velocity - dry_give * dry_force - give * smooth;
+        self.end_velocity[k] = without[1] - dry_give * dry_force - give * smooth;
         (self.smooth[k], self.dry_force[k]) = (smooth, dry_force);
         let change = (smooth - old_smooth).abs() + (dry_force - old_dry).abs();
         change <= FORCE_TOLERANCE * (smooth.abs() + dry_force.abs())

@@ -20,6 +20,11 @@ use super::secant::{FORCE_TOLERANCE, LAST_STEP, SECANT_STEPS};
 impl Plant<'_> {
     /// (5); true if no force changed.
     pub(super) fn solve_together(&mut self, time_s: f64) -> bool {
+        for a in 0..self.together.members.len() {
+            let i = self.together.members[a];
+            self.together.without[a] = self.motion_under(i, |j| !self.joints[j].has_tangent);
+            self.together.old[a] = self.smooth[i];
+        }
         let (m, c) = (self.joints.len(), &self.compliance);
         let Together {
             members,
@@ -27,20 +32,8 @@ impl Plant<'_> {
             old,
             matrix,
             residual,
-            ..
         } = &mut self.together;
         let g = members.len();
-        for (a, &i) in members.iter().enumerate() {
-            let (mut d, mut v) = (self.free_displacement[i], self.free_velocity[i]);
-            for j in (0..m).filter(|j| !self.joints[*j].has_tangent) {
-                let k = i * m + j;
-                let (s, dry) = (self.smooth[j], self.dry_force[j]);
-                d -= c.displacement[k] * s + c.dry_displacement[k] * dry;
-                v -= c.velocity[k] * s + c.dry_velocity[k] * dry;
-            }
-            without[a] = [d, v];
-            old[a] = self.smooth[i];
-        }
         for _ in 0..SECANT_STEPS {
             for (a, &i) in members.iter().enumerate() {
                 let [mut displacement, mut velocity] = without[a];

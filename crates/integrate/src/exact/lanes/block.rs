@@ -107,12 +107,7 @@ fn push_body<S: Simd>(simd: S, point: BodyPoint, force: Wide<S>, dof_force: &mut
 
 /// `value − (a b + c d)`.
 #[inline(always)]
-pub(super) fn less_products<S: Simd>(
-    simd: S,
-    value: &Pack,
-    first: [&Pack; 2],
-    second: [&Pack; 2],
-) -> Pack {
+fn less_products<S: Simd>(simd: S, value: &Pack, first: [&Pack; 2], second: [&Pack; 2]) -> Pack {
     let product = |[a, b]: [&Pack; 2]| Wide::of(simd, a) * Wide::of(simd, b);
     (Wide::of(simd, value) - (product(first) + product(second))).pack()
 }
@@ -246,22 +241,35 @@ impl<'a> Block<'a> {
         }
     }
 
+    /// Motion across a joint at the end of the step under the forces of some joints.
+    #[inline(always)]
+    pub(super) fn motion_under<S: Simd>(
+        &self,
+        simd: S,
+        k: usize,
+        acts: impl Fn(usize) -> bool,
+    ) -> [Pack; 2] {
+        let m = self.joints.len();
+        let [mut displacement, mut velocity] = self.free[k];
+        let [x, v, dry_x, dry_v] = &self.compliance;
+        for j in (0..m).filter(|&j| acts(j)) {
+            let (entry, other) = (k * m + j, &self.joints[j]);
+            let forces = [&other.smooth, &other.dry_force];
+            let (xs, vs) = ([&x[entry], forces[0]], [&v[entry], forces[0]]);
+            displacement = less_products(simd, &displacement, xs, [&dry_x[entry], forces[1]]);
+            velocity = less_products(simd, &velocity, vs, [&dry_v[entry], forces[1]]);
+        }
+        [displacement, velocity]
+    }
+
     /// Commits the memories, with all forces where they settled.
     #[inline(always)]
     fn remember<S: Simd>(&mut self, simd: S) {
-        let m = self.joints.len();
-        let [x, _, dry_x, _] = &self.compliance;
-        for i in 0..m {
+        for i in 0..self.joints.len() {
             let Some(element) = self.places[i].remembers else {
                 continue;
             };
-            let mut displacement = self.free[i][0];
-            for j in 0..m {
-                let (k, other) = (i * m + j, &self.joints[j]);
-                let forces = [&other.smooth, &other.dry_force];
-                let (smooth, dry) = ([&x[k], forces[0]], [&dry_x[k], forces[1]]);
-                displacement = less_products(simd, &displacement, smooth, dry);
-            }
+            let [displacement, _] = self.motion_under(simd, i, |_| true);
             let joint = &mut self.joints[i];
             joint.displacement = displacement;
             self.laws[element].remember(self.arch, joint);

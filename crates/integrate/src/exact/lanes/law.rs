@@ -68,11 +68,7 @@ impl<L: ForceLaw, F: Fn([f64; K]) -> L, const K: usize> LawLanes for Gathered<F,
     }
 }
 
-impl<L, F, const K: usize> LaneLaw for Gathered<F, K>
-where
-    L: ForceLaw,
-    F: Fn([f64; K]) -> L + Send + Sync,
-{
+impl<L: LawLanes + Send + Sync> LaneLaw for L {
     fn act(&self, arch: Arch, is: Acting, joint: &mut JointLanes) {
         arch.dispatch(Act(self, is, joint));
     }
@@ -173,20 +169,6 @@ impl<L: PackLaw> LawLanes for Packed<L> {
     }
 }
 
-impl<L: PackLaw> LaneLaw for Packed<L> {
-    fn act(&self, arch: Arch, is: Acting, joint: &mut JointLanes) {
-        arch.dispatch(Act(self, is, joint));
-    }
-
-    fn tangent(&self, arch: Arch, joint: &mut JointLanes) {
-        arch.dispatch(Tangents(self, joint));
-    }
-
-    fn remember(&self, arch: Arch, joint: &mut JointLanes) {
-        arch.dispatch(Remember(self, joint));
-    }
-}
-
 /// Laws that are asked one after the other.
 pub(super) struct OneByOne<'a>(pub(super) [&'a dyn ForceLaw; LANES]);
 
@@ -217,20 +199,6 @@ impl LawLanes for OneByOne<'_> {
     #[inline(always)]
     fn dry_level(&self, lane: usize, speed: f64) -> f64 {
         self.0[lane].dry_level(speed).unwrap_or(0.0)
-    }
-}
-
-impl LaneLaw for OneByOne<'_> {
-    fn act(&self, arch: Arch, is: Acting, joint: &mut JointLanes) {
-        arch.dispatch(Act(self, is, joint));
-    }
-
-    fn tangent(&self, arch: Arch, joint: &mut JointLanes) {
-        arch.dispatch(Tangents(self, joint));
-    }
-
-    fn remember(&self, arch: Arch, joint: &mut JointLanes) {
-        arch.dispatch(Remember(self, joint));
     }
 }
 

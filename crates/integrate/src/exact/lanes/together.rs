@@ -2,7 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::block::{Block, less_products};
+use super::block::Block;
 use super::wide::{Which, Wide};
 use super::{Mask, Pack};
 use crate::exact::secant::{FORCE_TOLERANCE, LAST_STEP, SECANT_STEPS};
@@ -78,18 +78,9 @@ impl Block<'_> {
     /// Motion of the members without their own forces.
     #[inline(always)]
     fn without_members<S: Simd>(&mut self, simd: S) {
-        let m = self.joints.len();
-        let [x, v, dry_x, dry_v] = &self.compliance;
-        for (a, &i) in self.together.members.iter().enumerate() {
-            let [mut displacement, mut velocity] = self.free[i];
-            for j in (0..m).filter(|j| !self.places[*j].has_tangent) {
-                let (k, other) = (i * m + j, &self.joints[j]);
-                let forces = [&other.smooth, &other.dry_force];
-                let (xs, vs) = ([&x[k], forces[0]], [&v[k], forces[0]]);
-                displacement = less_products(simd, &displacement, xs, [&dry_x[k], forces[1]]);
-                velocity = less_products(simd, &velocity, vs, [&dry_v[k], forces[1]]);
-            }
-            self.together.without[a] = [displacement, velocity];
+        for a in 0..self.together.members.len() {
+            let i = self.together.members[a];
+            self.together.without[a] = self.motion_under(simd, i, |j| !self.places[j].has_tangent);
             self.together.old[a] = self.joints[i].smooth;
         }
     }

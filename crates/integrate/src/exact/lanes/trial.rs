@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::block::{Block, less_products};
+use super::block::Block;
 use super::joint::Acting;
 use super::secant::Secant;
 use super::wide::{Which, Wide};
@@ -13,7 +13,7 @@ impl Block<'_> {
     /// Updates S and D of one joint of the open sets with the others held; the sets that did not stay where they were.
     #[inline(always)]
     pub(super) fn solve_joint<S: Simd>(&mut self, simd: S, k: usize, open: &Mask) -> Mask {
-        let without = self.without(simd, k);
+        let without = self.motion_under(simd, k, |j| j != k);
         let open = Which::of(simd, open);
         let joint = &self.joints[k];
         let [old_smooth, old_dry] =
@@ -48,22 +48,6 @@ impl Block<'_> {
         let tolerance = Wide::splat(simd, FORCE_TOLERANCE);
         let settled = change.is_at_most(tolerance * (smooth.abs() + dry_force.abs()));
         (open & !settled).mask()
-    }
-
-    /// Motion across a joint at the end of the step without its own forces.
-    #[inline(always)]
-    fn without<S: Simd>(&self, simd: S, k: usize) -> [Pack; 2] {
-        let m = self.joints.len();
-        let [mut displacement, mut velocity] = self.free[k];
-        let [x, v, dry_x, dry_v] = &self.compliance;
-        for j in (0..m).filter(|&j| j != k) {
-            let (entry, other) = (k * m + j, &self.joints[j]);
-            let forces = [&other.smooth, &other.dry_force];
-            let (xs, vs) = ([&x[entry], forces[0]], [&v[entry], forces[0]]);
-            displacement = less_products(simd, &displacement, xs, [&dry_x[entry], forces[1]]);
-            velocity = less_products(simd, &velocity, vs, [&dry_v[entry], forces[1]]);
-        }
-        [displacement, velocity]
     }
 
     /// What the laws of a joint say where S is `smooth`: S, and D, which the joint keeps.
