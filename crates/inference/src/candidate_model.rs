@@ -99,6 +99,15 @@ pub(crate) fn by_rank(a: &CandidateModel, b: &CandidateModel) -> Ordering {
     by_posterior.then_with(|| a.key().cmp(&b.key()))
 }
 
+/// The set that leaves least, by its likelihood.
+pub(crate) fn least<'a>(
+    sets: impl IntoIterator<Item = &'a CandidateModel>,
+) -> Option<&'a CandidateModel> {
+    let by_misfit =
+        |a: &&CandidateModel, b: &&CandidateModel| a.fit.misfit.total_cmp(&b.fit.misfit);
+    sets.into_iter().min_by(by_misfit)
+}
+
 /// Sorts, best first, and keeps the best fit of each set.
 pub fn rank(sets: &mut Vec<CandidateModel>) {
     sets.sort_by(by_rank);

@@ -7,11 +7,11 @@ use crate::candidate_model::CandidateModel;
 /// Share of what a fit leaves below which another of the same set leaves notably less.
 const NOTABLY_LESS: f64 = 0.98;
 
-/// Which sets have been extended.
+/// Which sets have been extended, or changed in another way.
 #[derive(Default)]
 pub(crate) struct Extended(Mutex<Vec<Extension>>);
 
-/// A set that was extended by so many of the best scores.
+/// A set that was extended by so many of the best scores, or changed so often.
 struct Extension {
     key: Vec<String>,
     /// What it left of each channel.

@@ -17,6 +17,7 @@ mod asked;
 mod between_samples;
 mod candidate_model;
 mod coincidence;
+mod ending;
 mod extended;
 mod gap;
 mod marginal_likelihood;

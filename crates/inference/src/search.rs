@@ -11,22 +11,22 @@
 //!
 //! A stage is left out where the best set leaves nothing but noise, or, if it is one of wrong parameters, less than an effect that is worth
 //! a name would move, and no candidate promises to be worth a name: its score pays for its prior and for the values that it
-//! adjusts, it moves an output by enough, and a fit keeps it.
+//! adjusts, it moves an output by enough, and a fit keeps it. So it is where the best set holds as many effects as any and leaves no share
+//! that counts of what wrong parameters leave alone.
 
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
-use simgap_effects::{Family, Placed};
+use simgap_effects::Family;
 use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
 };
 
-use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
+use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, least, name, rank};
 use crate::extended::Extended;
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
-use crate::motion;
-use crate::noise_model::{NOISE_KNOWN, NoiseModel, noise_variance, rounding_variance, stepped};
+use crate::noise_model::NoiseModel;
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -53,13 +53,6 @@ fn size(others: usize, parameters: usize) -> usize {
 fn counts(set: &CandidateModel) -> [usize; 2] {
     let parameters = set.effects().iter().filter(|p| is_nominal(p)).count();
     [set.effects().len() - parameters, parameters]
-}
-
-/// The set that leaves least, by its likelihood.
-fn least(pool: &[CandidateModel]) -> Option<&CandidateModel> {
-    let by_misfit =
-        |a: &&CandidateModel, b: &&CandidateModel| a.fit.misfit.total_cmp(&b.fit.misfit);
-    pool.iter().min_by(by_misfit)
 }
 
 /// The first of some ranked sets of which each holds an effect, or a wrong nominal value, that none before holds, then the first of
@@ -160,20 +153,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether the set that leaves least leaves nothing but noise once it is fitted under the colour of that: beside a slow effect that
-    /// it holds and the others do not, records have few independent samples.
-    fn leaves_noise_by_its_colour(&self, pool: &[CandidateModel]) -> bool {
-        let Some(least) = least(pool) else {
-            return false;
-        };
-        let options = self.noise.with_colour_of(&least.fit).search_options();
-        let again = fit(self.problem, &least.fit.estimate, &options);
-        again.is_ok_and(|again| {
-            let again = self.candidate_model(again);
-            self.leaves_noise(&again, &self.noise_of(&again))
-        })
-    }
-
     /// The sets of a ranked pool, fitted again with the colour of what the set leaves that leaves least: the best of them, and of each
     /// effect the best sets of every size that hold it.
     pub fn recolour(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
@@ -181,6 +160,9 @@ impl<'a> Search<'a> {
             self.noise = self.noise.with_colour_of(&least.fit);
         }
         self.options = self.noise.search_options();
+        let is_none = |set: &&CandidateModel| set.effects().is_empty();
+        let before = pool.iter().find(is_none);
+        let every_kind = before.is_some_and(|none| self.extended.holds(none, FITTED[0]));
         self.extended = Extended::default();
         let mut seen = BTreeSet::new();
         let again = pool.iter().enumerate().filter(|(i, set)| {
@@ -197,50 +179,11 @@ impl<'a> Search<'a> {
             .filter_map(|set| self.fit(&set.fit.estimate).ok());
         let mut fitted: Vec<CandidateModel> = fitted.collect();
         rank(&mut fitted);
+        // Single effects of every kind are among them.
+        if let Some(none) = fitted.iter().find(is_none).filter(|_| every_kind) {
+            self.extended.note(none, FITTED[0]);
+        }
         fitted
-    }
-
-    /// Whether nothing can be added to the best set, or nothing that could make it likelier.
-    fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
-        let Some(best) = pool.first() else {
-            return Ok(false);
-        };
-        if self.is_spent() || self.is_full(best) {
-            return Ok(true);
-        }
-        let left = best.fit.variance.iter().zip(self.unexplainable(best));
-        if left
-            .into_iter()
-            .all(|(left, floor)| *left < NOISE_KNOWN * floor)
-        {
-            return Ok(true);
-        }
-        let noise = self.noise_of(best);
-        let leaves_noise = self.leaves_noise(best, &noise);
-        // An effect that is worth a name moves more than this leaves; of a law, another may leave less.
-        let over_noise = best.fit.variance.iter().zip(&noise);
-        let over_noise: Vec<f64> = over_noise
-            .map(|(left, noise)| (left - NOISE_KNOWN * noise).max(0.0).sqrt())
-            .collect();
-        let are_parameters = !best.effects().is_empty() && best.effects().iter().all(is_nominal);
-        let motion = self.problem.output_std();
-        let hides_nothing = motion::is_enough(&over_noise, &motion).all(|enough| !enough);
-        let leaves_little = are_parameters && hides_nothing;
-        Ok((leaves_little || leaves_noise) && !self.is_promising(best)?)
-    }
-
-    /// What no set beyond this one is expected to explain, mean square of each channel: the accuracy of the simulation, noise
-    /// of the inputs, and what the steps of the set round off.
-    pub(crate) fn unexplainable(&self, set: &CandidateModel) -> Vec<f64> {
-        let rounded = rounding_variance(self.problem, set.effects());
-        let channels = self.floor_variance().zip(rounded);
-        channels.map(|(floor, rounded)| floor + rounded).collect()
-    }
-
-    /// What no set is expected to explain, mean square of each channel.
-    fn floor_variance(&self) -> impl Iterator<Item = f64> + '_ {
-        let channels = self.options.floor.iter().zip(self.problem.output_std());
-        channels.map(|(floor, std)| (floor * std).powi(2))
     }
 
     /// Whether a set holds as many effects as any set.
@@ -263,30 +206,6 @@ impl<'a> Search<'a> {
             _ => size(others + 1, parameters),
         };
         size <= MOST_EFFECTS && !set.rules_out(candidate)
-    }
-
-    /// Noise of the sensors in what a set leaves, and what no set is expected to explain, mean square of each channel.
-    #[must_use]
-    pub fn noise_of(&self, set: &CandidateModel) -> Vec<f64> {
-        let stepped = stepped(self.problem, set.effects());
-        let noise = noise_variance(&set.fit.discrepancy, &stepped);
-        let channels = noise.iter().zip(self.floor_variance());
-        channels.map(|(noise, floor)| noise + floor).collect()
-    }
-
-    /// Whether a set leaves nothing but noise ([`Search::noise_of`] it). What a converter rounds off looks like noise, and is explained by its steps.
-    fn leaves_noise(&self, set: &CandidateModel, noise: &[f64]) -> bool {
-        let beside = self.space.candidates.iter();
-        let beside = beside.filter(|(candidate, _)| !set.holds(candidate));
-        let steps = beside.filter_map(|(candidate, scale)| {
-            let values = candidate.effect.starts(scale).into_iter().next()?;
-            let placed = Placed::new(candidate.effect, candidate.at.clone(), values);
-            placed.action().is_stepped().then_some(placed)
-        });
-        let rounded = rounding_variance(self.problem, &steps.collect::<Vec<_>>());
-        let noise = noise.iter().zip(rounded);
-        let mut channels = set.fit.variance.iter().zip(noise);
-        channels.all(|(left, (noise, rounded))| *left < NOISE_KNOWN * (noise - rounded).max(0.0))
     }
 
     /// Sets of none to three effects, best first.
@@ -390,12 +309,13 @@ impl<'a> Search<'a> {
         Ok(pool)
     }
 
-    /// Adds to the best sets, changes the best of them by one effect, and again, as long as a better one is found and the search has
-    /// not ended. What was tried stays in the pool.
+    /// Adds to the best sets unless the best is at its end, changes the best of them by one effect, and again, as long as a better one
+    /// is found and the search has not ended. What was tried stays in the pool.
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
     pub fn refine(&self, pool: &mut Vec<CandidateModel>) -> Result<(), EstimateError> {
+        let rescaled = Extended::default();
         for _ in 0..ROUNDS {
             let Some(best) = pool.first().cloned() else {
                 return Ok(());
@@ -407,8 +327,10 @@ impl<'a> Search<'a> {
             let mut seen = BTreeSet::new();
             let leading = pool.iter().filter(|set| seen.insert(set.key()));
             let leading: Vec<CandidateModel> = leading.take(LEADING).cloned().collect();
-            for set in leading.iter().filter(|set| !self.is_full(set)) {
-                pool.extend(self.extend(set, ADDED)?);
+            if !self.is_at_its_end(&best)? {
+                for set in leading.iter().filter(|set| !self.is_full(set)) {
+                    pool.extend(self.extend(set, ADDED)?);
+                }
             }
             let changed = (0..best.effects().len()).into_par_iter().map(|i| {
                 let mut changed = self.grow(&best, i)?;
@@ -421,7 +343,10 @@ impl<'a> Search<'a> {
             });
             let changed = changed.collect::<Result<Vec<_>, EstimateError>>()?;
             pool.extend(changed.into_iter().flatten());
-            pool.extend(leading.iter().flat_map(|set| self.rescale(set)));
+            for set in leading.iter().filter(|set| !rescaled.holds(set, 1)) {
+                rescaled.note(set, 1);
+                pool.extend(self.rescale(set));
+            }
             pool.retain(|set| set.log_marginal_likelihood.is_finite());
             rank(pool);
             let stays = pool.first().is_none_or(|first| first.key() == best.key());

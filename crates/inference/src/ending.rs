@@ -1,0 +1,108 @@
+//! When a search ends: nothing but noise is left, or no share that counts, and no candidate promises to be worth a name.
+
+use simgap_effects::Placed;
+use simgap_estimate::{EstimateError, fit};
+
+use crate::candidate_model::{CandidateModel, is_nominal, least};
+use crate::gap::{Gap, RELEVANT_SHARE};
+use crate::motion;
+use crate::noise_model::{NOISE_KNOWN, noise_variance, rounding_variance, stepped};
+use crate::search::Search;
+
+impl Search<'_> {
+    /// Whether the best set is at its end, or holds as many effects as any and leaves no share that counts.
+    pub(crate) fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
+        let Some(best) = pool.first() else {
+            return Ok(false);
+        };
+        let is_no_larger = self.is_full(best) && self.leaves_no_share(best, pool);
+        Ok(self.is_spent() || is_no_larger || self.is_at_its_end(best)?)
+    }
+
+    /// Whether a set leaves no share that counts of what wrong nominal parameters leave alone, so far as these were fitted.
+    fn leaves_no_share(&self, set: &CandidateModel, pool: &[CandidateModel]) -> bool {
+        let are_alone = |set: &&CandidateModel| set.effects().iter().all(is_nominal);
+        least(pool.iter().filter(are_alone)).is_none_or(|alone| {
+            let (left, noise) = (&set.fit.variance, self.noise_of(set));
+            let std = self.problem.output_std();
+            let gap = Gap::of(&alone.fit.variance, left, &noise, &std);
+            gap.left(left) < RELEVANT_SHARE
+        })
+    }
+
+    /// Whether nothing that is added to a set could make it likelier: it leaves nothing but noise or, of wrong parameters, less than
+    /// what is worth a name would move, and no candidate promises to be worth one.
+    pub(crate) fn is_at_its_end(&self, set: &CandidateModel) -> Result<bool, EstimateError> {
+        let left = set.fit.variance.iter().zip(self.unexplainable(set));
+        if left
+            .into_iter()
+            .all(|(left, floor)| *left < NOISE_KNOWN * floor)
+        {
+            return Ok(true);
+        }
+        let noise = self.noise_of(set);
+        let leaves_noise = self.leaves_noise(set, &noise);
+        // An effect that is worth a name moves more than this leaves; of a law, another may leave less.
+        let over_noise = set.fit.variance.iter().zip(&noise);
+        let over_noise: Vec<f64> = over_noise
+            .map(|(left, noise)| (left - NOISE_KNOWN * noise).max(0.0).sqrt())
+            .collect();
+        let are_parameters = !set.effects().is_empty() && set.effects().iter().all(is_nominal);
+        let motion = self.problem.output_std();
+        let hides_nothing = motion::is_enough(&over_noise, &motion).all(|enough| !enough);
+        let leaves_little = are_parameters && hides_nothing;
+        Ok((leaves_little || leaves_noise) && !self.is_promising(set)?)
+    }
+
+    /// Whether the set that leaves least leaves nothing but noise once it is fitted under the colour of that: beside a slow effect that
+    /// it holds and the others do not, records have few independent samples.
+    pub(crate) fn leaves_noise_by_its_colour(&self, pool: &[CandidateModel]) -> bool {
+        let Some(least) = least(pool) else {
+            return false;
+        };
+        let options = self.noise.with_colour_of(&least.fit).search_options();
+        let again = fit(self.problem, &least.fit.estimate, &options);
+        again.is_ok_and(|again| {
+            let again = self.candidate_model(again);
+            self.leaves_noise(&again, &self.noise_of(&again))
+        })
+    }
+
+    /// Whether a set leaves nothing but noise ([`Search::noise_of`] it). What a converter rounds off looks like noise, and is explained by its steps.
+    fn leaves_noise(&self, set: &CandidateModel, noise: &[f64]) -> bool {
+        let beside = self.space.candidates.iter();
+        let beside = beside.filter(|(candidate, _)| !set.holds(candidate));
+        let steps = beside.filter_map(|(candidate, scale)| {
+            let values = candidate.effect.starts(scale).into_iter().next()?;
+            let placed = Placed::new(candidate.effect, candidate.at.clone(), values);
+            placed.action().is_stepped().then_some(placed)
+        });
+        let rounded = rounding_variance(self.problem, &steps.collect::<Vec<_>>());
+        let noise = noise.iter().zip(rounded);
+        let mut channels = set.fit.variance.iter().zip(noise);
+        channels.all(|(left, (noise, rounded))| *left < NOISE_KNOWN * (noise - rounded).max(0.0))
+    }
+
+    /// Noise of the sensors in what a set leaves, and what no set is expected to explain, mean square of each channel.
+    #[must_use]
+    pub fn noise_of(&self, set: &CandidateModel) -> Vec<f64> {
+        let stepped = stepped(self.problem, set.effects());
+        let noise = noise_variance(&set.fit.discrepancy, &stepped);
+        let channels = noise.iter().zip(self.floor_variance());
+        channels.map(|(noise, floor)| noise + floor).collect()
+    }
+
+    /// What no set beyond this one is expected to explain, mean square of each channel: the accuracy of the simulation, noise
+    /// of the inputs, and what the steps of the set round off.
+    pub(crate) fn unexplainable(&self, set: &CandidateModel) -> Vec<f64> {
+        let rounded = rounding_variance(self.problem, set.effects());
+        let channels = self.floor_variance().zip(rounded);
+        channels.map(|(floor, rounded)| floor + rounded).collect()
+    }
+
+    /// What no set is expected to explain, mean square of each channel.
+    fn floor_variance(&self) -> impl Iterator<Item = f64> + '_ {
+        let channels = self.options.floor.iter().zip(self.problem.output_std());
+        channels.map(|(floor, std)| (floor * std).powi(2))
+    }
+}
