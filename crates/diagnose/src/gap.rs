@@ -10,6 +10,8 @@ use crate::diagnosis::{ChannelGap, Gap};
 /// A nominal gap that stands out of the noise by less than this share of its square is none: what
 /// is closed of it would be a ratio of roundings.
 const TINY: f64 = 1e-6;
+/// Share of a mean square by which two computations of it differ.
+const ROUNDING: f64 = 1e-12;
 
 /// Predictions of the check runs by one model, and their nrmse.
 pub(crate) struct Prediction {
@@ -89,12 +91,12 @@ pub(crate) fn noise_floor(check: &Problem, effects: &[Placed], corrected: &Predi
 
 /// 1 − sqrt(max(corrected² − floor², 0) / max(nominal² − floor², tiny)).
 pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
-    let left = (corrected * corrected - floor * floor).max(0.0);
+    let left = corrected * corrected - floor * floor;
     let there = (nominal * nominal - floor * floor).max(TINY * nominal * nominal);
-    if left == 0.0 {
-        1.0
-    } else {
-        1.0 - (left / there).sqrt()
+    // Where the floor is all that is left the two are one number, computed twice.
+    match left > ROUNDING * corrected * corrected {
+        true => 1.0 - (left / there).sqrt(),
+        false => 1.0,
     }
 }
 
@@ -177,6 +179,7 @@ mod tests {
                 < 1e-12
         );
         assert_eq!(closed(0.5, 0.1, 0.1), 1.0);
+        assert_eq!(closed(0.5, 0.1 * (1.0 + f64::EPSILON), 0.1), 1.0);
         assert_eq!(closed(0.5, 0.5, 0.0), 0.0);
     }
 }

@@ -4,7 +4,7 @@
 //! inputs, records         -> what inputs do between samples             between_samples
 //! nominal model, records -> noise model (once)                         noise_model
 //! catalogue x places     -> sets and their prior                       model_space
-//! proposals of sets      -> fits; a search with budgets                proposals, search, stretches
+//! proposals of sets      -> fits; a search with budgets                proposals, search, stretches, ending
 //! ln Z + ln p of each    -> computed once, never changed               marginal_likelihood
 //! posterior over sets    -> effects, classes, relevance                model_posterior
 //! a law of any shape, values that agree -> the probability of another cause     other, coincidence
