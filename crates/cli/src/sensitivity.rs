@@ -61,15 +61,14 @@ struct Row {
     freq_change_hz: Option<f64>,
 }
 
-/// Half of the last of the 27 digits, of 52, that tell sizes apart.
-const HALF_ROUNDED: u64 = 1 << 24;
+/// Sizes that differ by less than one part in this many come in the order of the model file, whatever the processor rounds.
+const TOLD_APART: f64 = 1e8;
 
 impl Row {
-    /// Size of the change of the pole for one percent, for the order of the rows, to eight digits: values that differ in what is rounded
-    /// stay in the order of the model file on every processor.
+    /// Logarithm of the change of the pole for one percent, in steps of what is told apart, for the order of the rows.
     fn size(&self) -> f64 {
         let size = self.value.abs() * self.pole_derivative.re.hypot(self.pole_derivative.im);
-        f64::from_bits((size.to_bits() + HALF_ROUNDED) & !(2 * HALF_ROUNDED - 1))
+        (TOLD_APART * size.ln()).round()
     }
 }
 

@@ -7,11 +7,9 @@ use simgap_simulate::Simulator;
 
 use crate::diagnosis::{ChannelGap, Gap};
 
-/// A nominal gap that stands out of the noise by less than this share of its square is none: what
-/// is closed of it would be a ratio of roundings.
+/// A gap that stands out of the noise by less than this share of its square is none: what is closed
+/// of it, or is left, would be a ratio of roundings.
 const TINY: f64 = 1e-6;
-/// Share of a mean square by which two computations of it differ.
-const ROUNDING: f64 = 1e-12;
 
 /// Predictions of the check runs by one model, and their nrmse.
 pub(crate) struct Prediction {
@@ -93,8 +91,7 @@ pub(crate) fn noise_floor(check: &Problem, effects: &[Placed], corrected: &Predi
 pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
     let left = corrected * corrected - floor * floor;
     let there = (nominal * nominal - floor * floor).max(TINY * nominal * nominal);
-    // Where the floor is all that is left the two are one number, computed twice.
-    match left > ROUNDING * corrected * corrected {
+    match left > TINY * corrected * corrected {
         true => 1.0 - (left / there).sqrt(),
         false => 1.0,
     }

@@ -259,3 +259,27 @@ fn verify_a_force_at_one_frequency_grows_into_a_mode_there() {
         assert!((ages - 1.0).abs() < ROUNDING, "{values:?}");
     }
 }
+
+/// A hidden mass or a support that nothing damps is a tone, but where nothing damps the machine either.
+#[test]
+fn verify_a_mode_that_does_not_die_away_is_none() {
+    let omega = TAU * 6.3;
+    let keeps = |kind: &str, ratio: f64, scale: &SiteScale| {
+        let values = match kind {
+            "attached_mode" => vec![scale.mass_kg, omega / TAU, ratio, 0.0, 0.0],
+            _ => vec![omega * omega, 1.0, ratio, 0.0, 0.0],
+        };
+        effect(kind).has_support(&values, scale)
+    };
+    let free = SiteScale {
+        damping_n_s_per_m: 1e-3,
+        ..scale()
+    };
+    for kind in ["attached_mode", "flexible_support"] {
+        let losing = |share: f64| share / (omega * scale().duration_s);
+        assert!(keeps(kind, losing(1.0), &scale()), "{kind}");
+        assert!(!keeps(kind, losing(0.01), &scale()), "{kind}");
+        assert!(keeps(kind, losing(0.01), &free), "{kind}");
+        assert!(!keeps(kind, losing(1e-4), &free), "{kind}");
+    }
+}

@@ -15,8 +15,10 @@ impl Search<'_> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        let is_no_larger = self.is_full(best) && self.leaves_no_share(best, pool);
-        Ok(self.is_spent() || is_no_larger || self.is_at_its_end(best)?)
+        if self.is_spent() || (self.is_full(best) && self.leaves_no_share(best, pool)) {
+            return Ok(true);
+        }
+        self.is_at_its_end(best)
     }
 
     /// Whether a set leaves no share that counts of what wrong nominal parameters leave alone, so far as these were fitted.

@@ -160,9 +160,6 @@ impl<'a> Search<'a> {
             self.noise = self.noise.with_colour_of(&least.fit);
         }
         self.options = self.noise.search_options();
-        let is_none = |set: &&CandidateModel| set.effects().is_empty();
-        let before = pool.iter().find(is_none);
-        let every_kind = before.is_some_and(|none| self.extended.holds(none, FITTED[0]));
         self.extended = Extended::default();
         let mut seen = BTreeSet::new();
         let again = pool.iter().enumerate().filter(|(i, set)| {
@@ -179,10 +176,6 @@ impl<'a> Search<'a> {
             .filter_map(|set| self.fit(&set.fit.estimate).ok());
         let mut fitted: Vec<CandidateModel> = fitted.collect();
         rank(&mut fitted);
-        // Single effects of every kind are among them.
-        if let Some(none) = fitted.iter().find(is_none).filter(|_| every_kind) {
-            self.extended.note(none, FITTED[0]);
-        }
         fitted
     }
 
@@ -336,7 +329,10 @@ impl<'a> Search<'a> {
                 let mut changed = self.grow(&best, i)?;
                 changed.extend(self.shrink(&best, i));
                 if let Ok(smaller) = self.fit(&self.without(&best, i)) {
-                    changed.extend(self.extend(&smaller, FITTED[1])?);
+                    // Single effects of every kind are in the pool.
+                    if !smaller.effects().is_empty() {
+                        changed.extend(self.extend(&smaller, FITTED[1])?);
+                    }
                     changed.push(smaller);
                 }
                 Ok(changed)

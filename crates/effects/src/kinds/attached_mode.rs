@@ -35,6 +35,13 @@ pub(super) fn rings_on(scale: &SiteScale, freq: f64) -> f64 {
     1.0 / (TAU * freq * scale.duration_s)
 }
 
+/// Whether a mode of a decay rate, 1/s, dies away along the longest record, or like the mass that it moves where that hardly
+/// does: one that nothing damps is a tone.
+pub(super) fn dies_away(decay_per_s: f64, scale: &SiteScale) -> bool {
+    let of_host = scale.damping_n_s_per_m / (2.0 * scale.mass_kg);
+    decay_per_s * scale.duration_s > DIES_AWAY * (of_host * scale.duration_s).min(1.0)
+}
+
 pub(super) fn unused_name(model: &Model, stem: &str) -> String {
     let taken = |name: &str| model.masses.iter().any(|mass| mass.name == name);
     let mut name = stem.to_string();
@@ -87,7 +94,7 @@ pub(super) fn octaves(scale: &SiteScale) -> impl Iterator<Item = f64> + use<> {
 const LIGHTEST: f64 = 1e-5;
 /// With more damping an attached mass does not vibrate.
 const RINGS: f64 = 1.0;
-/// Share of its amplitude, about, that a mode loses along a record at the least: one that nothing damps is a tone.
+/// Share of its amplitude, about, that a mode loses along a record at the least, or of the decay of the mass that it moves.
 const DIES_AWAY: f64 = 0.1;
 
 impl Effect for AttachedMode {
@@ -171,12 +178,12 @@ impl Effect for AttachedMode {
 
     /// A lighter one is no mass but a force that dies away, carried by a start kilometres off; one that does not
     /// ring is a force that lags the motion, and no mode; nor does a record show one above half its sample rate, or one that
-    /// takes longer than the record to swing once, or that does not die away along it.
+    /// takes longer than the record to swing once, or that does not die away.
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         values[0] >= LIGHTEST * scale.mass_kg
             && values[1] < 0.5 / scale.time_step_s
             && values[1] * scale.duration_s > 1.0
-            && values[2] * TAU * values[1] * scale.duration_s > DIES_AWAY
+            && dies_away(values[2] * TAU * values[1], scale)
             && values[2] < RINGS
     }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Damper, GROUND, Location, Mass, Model, OutputKind, Spring, same_pair};
 
-use super::attached_mode::{octaves, rings_on, unused_name};
+use super::attached_mode::{dies_away, octaves, rings_on, unused_name};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// What the model takes for the ground gives way: the springs and dampers between a mass and the
@@ -147,6 +147,11 @@ impl Effect for FlexibleSupport {
             }
         }
         starts
+    }
+
+    /// One of thousands of tons that nothing damps does not give way: it is a tone, carried by its start.
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
+        dies_away(values[2] * (values[0] / values[1]).sqrt(), scale)
     }
 
     fn turns_into(&self) -> &'static [&'static str] {
