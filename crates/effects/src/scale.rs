@@ -39,8 +39,8 @@ pub struct SiteScale {
     /// Strongest lines of what the nominal model leaves (channel sites: of this channel), Hz; zero
     /// where there are fewer.
     pub lines_hz: [f64; LINES],
-    /// Strongest lines of what is left of a channel times its signal, and times the rate of its signal, Hz: a carrier of either.
-    /// Zero where there are fewer, and at every other site.
+    /// Strongest lines of what is left of a channel times its signal, and times the rate of its signal, Hz: a carrier of either; at an
+    /// input, of what gains and delays leave of every channel times the rate of the input. Zero where there are fewer, and at every other site.
     pub carriers_hz: [f64; LINES],
     /// Strongest lines of the motion, Hz.
     pub motion_hz: [f64; LINES],

@@ -129,7 +129,7 @@ impl Sampled<'_> {
     }
 
     /// The samples whose positions are on the record, see [`SignalMap::reach`].
-    fn on_record(&self, position: impl Fn(usize) -> f64) -> Range<usize> {
+    pub(crate) fn on_record(&self, position: impl Fn(usize) -> f64) -> Range<usize> {
         let len = self.values.len();
         let most = most_beyond(len);
         let is_off = |i: &usize| !(0.0..=(len as f64 - 1.0)).contains(&position(*i));

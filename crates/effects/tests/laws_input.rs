@@ -111,35 +111,68 @@ fn verify_held_input_repeats_samples() {
             assert_near(*found, *needed, ROUNDING);
         }
     };
-    let from_start = [0.0, 0.0, 0.0, 0.0, 4.0, 4.0, 4.0, 4.0, 8.0, 8.0];
+    // A renewal at a sample is in the middle of its interval.
+    let from_start = [0.0, 0.0, 0.0, 0.0, 2.0, 4.0, 4.0, 4.0, 6.0, 8.0];
     assert_held(&of(4.0, 0.0), &from_start);
     // Before the first renewal the record holds nothing older than its first value.
-    let later = [0.0, 0.0, 0.0, 3.0, 3.0, 3.0, 3.0, 7.0, 7.0, 7.0];
+    let later = [0.0, 0.0, 0.0, 1.5, 3.0, 3.0, 3.0, 5.0, 7.0, 7.0];
     assert_held(&of(4.0, 3.0), &later);
     assert_eq!(of(0.0, 0.0), signal);
-    // Between samples: the value at 2.5 samples is held from sample 3 to 4, that at 5 samples from there.
-    let between = [0.0, 0.0, 0.0, 2.5, 2.5, 5.0, 5.0, 5.0, 7.5, 7.5];
+    // Between samples: the value at 2.5 samples is held from the end of the interval about sample 2 to the middle of that about 5.
+    let between = [0.0, 0.0, 0.0, 2.5, 2.5, 3.75, 5.0, 5.0, 7.5, 7.5];
     assert_held(&of(2.5, 0.0), &between);
+    // A fifth of the interval about sample 1 is old.
+    let fifth = [0.0, 0.8 * 0.7, 0.7, 0.7];
+    assert_held(&of(20.0, 0.7)[..4], &fifth);
     // A stretch keeps the clock of the record.
     let whole = of(3.0, 1.0);
     let stretch = map("held_input", &[3.0 * STEP_S, STEP_S]).apply(Sampled {
         first_index: 4,
         ..Sampled::from_start(&signal[4..], STEP_S)
     });
-    assert_held(&stretch, &whole[4..]);
+    // But for what was held before it.
+    assert_held(&stretch[1..], &whole[5..]);
 }
 
-/// A slow sine held every T is late by (T − Δt)/2 at the samples, whatever their rate.
+/// A slow sine held every T is late by T/2, whatever the rate of its samples.
 #[test]
 fn verify_held_input_is_a_delay_for_slow_inputs() {
-    let (freq_hz, samples) = (0.05, 8.0);
+    let freq_hz = 0.05;
     let signal = sine(20_000, 1.0, freq_hz);
-    let map = map("held_input", &[samples * STEP_S, 0.0]);
-    let held = through(map.as_ref(), &signal, STEP_S);
-    let late_s = 0.5 * (samples - 1.0) * STEP_S;
-    let expected = (TAU * freq_hz * late_s).cos();
-    // The amplitude falls by the sinc of a hold, here by 3e-5.
-    assert_near(fundamental(&held, freq_hz), expected, 1e-4);
+    for samples in [0.4, 1.0, 8.0, 8.3] {
+        let map = map("held_input", &[samples * STEP_S, 0.0]);
+        let held = through(map.as_ref(), &signal, STEP_S);
+        let expected = (TAU * freq_hz * 0.5 * samples * STEP_S).cos();
+        // The amplitude falls by the sinc of a hold, here by 3e-5.
+        assert_near(fundamental(&held, freq_hz), expected, 1e-4);
+    }
+}
+
+/// A fit follows the begin and the length of holds: what they do is continuous in both.
+#[test]
+fn prop_held_input_moves_with_its_times() {
+    let signal = sine(400, 1.0, 1.3);
+    let held = |hold: f64, start: f64| {
+        let map = map("held_input", &[hold * STEP_S, start * STEP_S]);
+        through(map.as_ref(), &signal, STEP_S)
+    };
+    let apart = |a: &[f64], b: &[f64]| {
+        let each = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        each.fold(0.0, f64::max)
+    };
+    for hold in [2.0, 7.0, 13.27] {
+        for start in [-1.0, 0.0, 0.5, 3.1] {
+            let here = held(hold, start);
+            assert!(
+                apart(&here, &held(hold, start + 1e-7)) < 1e-6,
+                "{hold}, {start}"
+            );
+            assert!(
+                apart(&here, &held(hold + 1e-9, start)) < 1e-6,
+                "{hold}, {start}"
+            );
+        }
+    }
 }
 
 #[test]
@@ -152,6 +185,20 @@ fn verify_held_input_starts_hold_every_phase_of_short_holds() {
             assert!(starts.contains(&start.to_vec()), "{start:?}");
         }
     }
+}
+
+/// What is left times the rate of the input has a line at one over the time of a hold.
+#[test]
+fn verify_held_input_starts_from_carriers() {
+    let sizes = SiteScale {
+        carriers_hz: [8.0, 0.0, 0.0, 0.0],
+        ..scale()
+    };
+    let starts = effect("held_input").starts(&sizes);
+    let longer = starts.iter().filter(|start| start[0] == 0.125);
+    let places: Vec<f64> = longer.map(|start| start[1] / start[0]).collect();
+    let even: Vec<f64> = (0..8).map(|k| f64::from(k) / 8.0).collect();
+    assert_eq!(places, even);
 }
 
 #[test]

@@ -18,6 +18,9 @@ const MOST_LEVELS: usize = 4096;
 const OFF_LATTICE: f64 = 0.05;
 const OFF_SHARE: f64 = 0.02;
 
+/// Delays, in samples, that are taken off what is left where carriers of an input are looked for: halves of holds.
+const MOST_LATE: usize = 25;
+
 impl Problem {
     /// Typical sizes at a place, from the motion that a fit predicts there and what it leaves.
     ///
@@ -117,23 +120,35 @@ impl Problem {
     }
 
     /// Strongest lines of what a fit leaves of a channel in the longest run, times the signal and times its rate, Hz: a carrier
-    /// c(t) of the signal leaves c(t) y, and c(t) y · y has a line at the frequency of c whatever the motion is.
+    /// c(t) of the signal leaves c(t) y, and c(t) y · y has a line at the frequency of c whatever the motion is. At an input u, of what it
+    /// leaves of each channel beyond a gain and a delay of it, times du/dt: a hold of period T leaves a saw-tooth times du/dt.
     #[must_use]
     pub fn carriers_left(&self, fit: &Fit, at: &Location) -> [f64; LINES] {
-        let (Some((run, left)), Some(i)) = (self.longest(fit), self.channel_at(at)) else {
+        let Some((run, left)) = self.longest(fit) else {
             return [0.0; LINES];
         };
-        let Some(signal) = run.measured.get(i).and_then(Option::as_ref) else {
+        let step = run.time_step_s;
+        if let Location::Input(name) = at {
+            let input = self.model.inputs.iter().position(|i| &i.channel == name);
+            let Some(driven) = input.map(|i| rate(&run.inputs[i])) else {
+                return [0.0; LINES];
+            };
+            let measured = run.measured.iter().zip(left);
+            let products = measured.filter_map(|(signal, left)| {
+                let beyond = beyond_gain_and_delay(signal.as_ref()?, left);
+                Some(product(&beyond, &driven))
+            });
+            let products: Vec<Vec<f64>> = products.collect();
+            let products: Vec<&[f64]> = products.iter().map(Vec::as_slice).collect();
+            return lines(&products, step);
+        }
+        let channel = self.channel_at(at);
+        let Some((i, signal)) = channel.and_then(|i| Some((i, run.measured.get(i)?.as_ref()?)))
+        else {
             return [0.0; LINES];
         };
-        let rate = |k: usize| signal[(k + 1).min(signal.len() - 1)] - signal[k.saturating_sub(1)];
-        let of_signal: Vec<f64> = left[i].iter().zip(signal).map(|(e, y)| e * y).collect();
-        let of_rate: Vec<f64> = left[i]
-            .iter()
-            .enumerate()
-            .map(|(k, e)| e * rate(k))
-            .collect();
-        lines(&[&of_signal, &of_rate], run.time_step_s)
+        let [of_signal, of_rate] = [product(&left[i], signal), product(&left[i], &rate(signal))];
+        lines(&[&of_signal, &of_rate], step)
     }
 
     /// The longest run, and what a fit leaves of each of its channels.
@@ -164,6 +179,53 @@ impl Problem {
             .map(|(_, std)| std);
         forces.fold(0.0, f64::max)
     }
+}
+
+fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
+}
+
+/// Change of a signal over two samples.
+fn rate(signal: &[f64]) -> Vec<f64> {
+    let last = signal.len().saturating_sub(1);
+    let change = |k: usize| signal[(k + 1).min(last)] - signal[k.saturating_sub(1)];
+    (0..signal.len()).map(change).collect()
+}
+
+/// What is left of a measured signal y beyond a gain and a delay of what is predicted of it, ŷ:
+///
+/// ```text
+/// y(t) − a ŷ(t − n Δt) − b ŷ′(t − n Δt),   a, b by least squares, the n that leaves least
+/// ```
+///
+/// Empty where the prediction does not move.
+fn beyond_gain_and_delay(measured: &[f64], left: &[f64]) -> Vec<f64> {
+    let predicted: Vec<f64> = measured.iter().zip(left).map(|(y, e)| y - e).collect();
+    let rate = rate(&predicted);
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let late = |samples: usize| {
+        let shown = measured.get(samples..)?;
+        let [y, r] = [&predicted, &rate].map(|signal| &signal[..shown.len()]);
+        let [yy, yr, rr] = [dot(y, y), dot(y, r), dot(r, r)];
+        let [my, mr] = [dot(shown, y), dot(shown, r)];
+        let determinant = yy * rr - yr * yr;
+        let a = (my * rr - mr * yr) / determinant;
+        let b = (mr * yy - my * yr) / determinant;
+        let signals = shown.iter().zip(y.iter().zip(r));
+        let beyond: Vec<f64> = signals.map(|(m, (y, r))| m - a * y - b * r).collect();
+        let mean_square = dot(&beyond, &beyond) / beyond.len() as f64;
+        mean_square
+            .is_finite()
+            .then_some((mean_square, samples, beyond))
+    };
+    let least = (0..=MOST_LATE)
+        .filter_map(late)
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    least.map_or_else(Vec::new, |(_, samples, beyond)| {
+        // On the clock of the record.
+        let before = std::iter::repeat_n(0.0, samples);
+        before.chain(beyond).collect()
+    })
 }
 
 /// A site that does not move in the nominal model still gets finite starting values.

@@ -293,6 +293,44 @@ fn verify_a_carrier_of_a_broad_motion_is_found() {
     assert!(is_carrier(&problem.carriers_left(&fit, &at)[0]));
 }
 
+/// A set point that is renewed every 13.27 samples: seen through the plant it is a delay, and what is left beyond that has lines about the
+/// rate of the renewals, from which a fit finds the time of a hold and where the first one begins. (A displacement hides them here.)
+#[test]
+fn verify_a_hold_is_found_from_its_carrier() {
+    const STEP_S: f64 = 0.005;
+    let hold = [13.27 * STEP_S, 4.1 * STEP_S];
+    let at = Location::Input("u".into());
+    for kind in ["velocity", "acceleration"] {
+        let model = model(&OSCILLATOR.replace("displacement", kind));
+        let held = placed("held_input", at.clone(), &hold);
+        let run = truth(&model, &[held], drive(STEP_S, 4000, 5.0), STEP_S, &[0.0; 2]);
+        let spread = run.measured[0].iter().flatten().map(|y| y * y).sum::<f64>() / 4000.0;
+        let problem = problem(&model, noisy(&run, 0.01 * spread.sqrt(), 3));
+        let options = FitOptions::white(1);
+        let base = fit_initial_states(&problem, &[], &options).unwrap();
+        let sizes = problem.site_scale(&base, &at).unwrap();
+        assert!(
+            (sizes.carriers_hz[0] * hold[0] - 1.0).abs() < 1e-3,
+            "{kind}: {sizes:?}"
+        );
+
+        let linear = linearise_at(&problem, &base, &options).unwrap();
+        let held = candidate("held_input", at.clone());
+        let best = score_shapes(&linear, &held, &held.effect.starts(&sizes))
+            .unwrap()
+            .swap_remove(0);
+        let from = start(vec![best.start], vec![], &base.estimate.initial[0]);
+        let found = fit(&problem, &from, &options).unwrap();
+        let values = &found.estimate.effects[0].values;
+        assert!(
+            (values[0] / hold[0] - 1.0).abs() < 1e-4,
+            "{kind}: {values:?}"
+        );
+        let late = (values[1] - hold[1]) / hold[0];
+        assert!((late - late.round()).abs() < 0.02, "{kind}: {values:?}");
+    }
+}
+
 /// The force that is measured counts for too little. Masses, springs, dampers and the drive that all count for as much less leave nothing
 /// either: a fit goes through a narrow valley from there to the sensor, whose one wrong value is likelier than four.
 #[test]

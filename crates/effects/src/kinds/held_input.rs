@@ -1,15 +1,20 @@
 //! An input reaches the plant in held values.
 
+use std::ops::Range;
+
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale, usual_prior};
 use crate::prior::Prior;
-use crate::signal_map::{Retiming, Sampled};
+use crate::signal_map::{Sampled, SignalMap};
 
 /// An input reaches the plant in held values: a set point that a controller or a bus renews only every T, and
 /// holds in between.
 ///
 /// ```text
-/// u_plant(t) = u(t_k),   t_k = t₀ + T ⌊(t − t₀)/T⌋,   t from the first sample of the record
+/// u_plant(t) = u(t_k),   t_k = t₀ + T ⌊(t − t₀)/T⌋,   t from the first sample of the record      (1)
 /// ```
+///
+/// A sample is the mean of (1) over the sampling interval about it: of one that a renewal falls into, the old and the
+/// new value each have their share.
 ///
 /// Seen by a slow plant this is a delay by half of T; lines at multiples of 1/T, less and plus the frequency of the
 /// input, tell it from one.
@@ -19,30 +24,78 @@ pub(crate) struct HeldInput;
 
 /// Numbers of samples of which every place of the first one is tried.
 const SHORT: [usize; 4] = [2, 3, 4, 5];
-/// Longer ones, with the first one at quarters of them.
+/// Longer ones as they are met with, the first one at quarters of them.
 const LONG: [usize; 4] = [8, 10, 20, 50];
 const QUARTERS: usize = 4;
-/// Share of a hold by which a time that falls on its begin may be rounded down.
-const ROUNDING: f64 = 1e-9;
+/// Holds that lines of what is left tell, and how many places of the first one are tried of each.
+const CARRIERS: usize = 2;
+const PLACES: u32 = 8;
+
+/// Holds of a number of samples, the first one at so many places of it.
+fn of_samples(samples: usize, places: usize, scale: &SiteScale) -> Vec<Vec<f64>> {
+    let first = |place: usize| place * samples / places;
+    let values = |place: usize| [samples, first(place)].map(|n| n as f64 * scale.time_step_s);
+    (0..places).map(|place| values(place).to_vec()).collect()
+}
 
 struct Hold {
     time_s: f64,
     start_s: f64,
 }
 
-impl Retiming for Hold {
-    fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
-        let first = signal.first_index as f64;
-        let since_s = (first + i as f64) * signal.time_step_s - self.start_s;
-        let count = (since_s / self.time_s + ROUNDING).floor();
-        let held_s = self.start_s + count * self.time_s;
-        let position = held_s / signal.time_step_s - first;
-        // No hold, or one of no length.
-        if position.is_finite() {
-            position
-        } else {
-            i as f64
+/// The last renewal before the end of the interval about a sample, and the one before it.
+struct Renewals {
+    /// In samples, the earlier first.
+    at: [f64; 2],
+    /// Share of the later one in the mean over the sampling interval.
+    share: f64,
+}
+
+impl Hold {
+    /// `None` of a hold without end.
+    fn renewals(&self, signal: &Sampled<'_>, i: usize) -> Option<Renewals> {
+        let step_s = signal.time_step_s;
+        if self.time_s <= step_s {
+            // Renewed more than once in each interval: late by half of a hold.
+            let late = i as f64 - 0.5 * self.time_s / step_s;
+            return Some(Renewals {
+                at: [late; 2],
+                share: 1.0,
+            });
         }
+        // To the end of the interval about the sample.
+        let until_s = (signal.first_index as f64 + i as f64 + 0.5) * step_s;
+        let count = ((until_s - self.start_s) / self.time_s).floor();
+        let later_s = self.start_s + count * self.time_s;
+        let first = signal.first_index as f64;
+        let at = [later_s - self.time_s, later_s].map(|time_s| time_s / step_s - first);
+        let share = ((until_s - later_s) / step_s).min(1.0);
+        at[0].is_finite().then_some(Renewals { at, share })
+    }
+}
+
+impl SignalMap for Hold {
+    fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
+        let held = |i: usize| match self.renewals(&signal, i) {
+            Some(Renewals { at, share }) if share < 1.0 => {
+                let [old, new] = at.map(|position| signal.at(position));
+                old + share * (new - old)
+            }
+            Some(Renewals { at, .. }) => signal.at(at[1]),
+            None => signal.values[i],
+        };
+        (0..signal.values.len()).map(held).collect()
+    }
+
+    fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
+        signal.on_record(|i| match self.renewals(&signal, i) {
+            Some(Renewals { at, share }) => at[usize::from(share >= 1.0)],
+            None => i as f64,
+        })
+    }
+
+    fn interpolates(&self) -> bool {
+        true
     }
 }
 
@@ -75,43 +128,49 @@ impl Effect for HeldInput {
         const {
             &[
                 Parameter::size("hold_time_s", "s", 0.0, f64::INFINITY),
-                Parameter::shape("hold_start_s", "s", 0.0, f64::INFINITY),
+                Parameter::shape("hold_start_s", "s", f64::NEG_INFINITY, f64::INFINITY),
             ]
         }
     }
 
     /// The holds begin anywhere within the first of them.
     fn prior(&self, place: usize, scale: &SiteScale) -> Prior {
-        let longest = LONG.iter().copied().max().unwrap_or(1) as f64;
         match place {
             1 => Prior::Uniform {
-                width: longest * scale.time_step_s,
+                width: LONG[LONG.len() - 1] as f64 * scale.time_step_s,
             },
             _ => usual_prior(self, place, scale),
         }
     }
 
-    /// Whole numbers of samples.
+    /// Few samples, and the times of carriers of what is left.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let start = |samples: usize, first: usize| {
-            [samples, first]
-                .map(|count| count as f64 * scale.time_step_s)
-                .to_vec()
-        };
-        let mut starts = vec![];
-        for samples in SHORT {
-            starts.extend((0..samples).map(|first| start(samples, first)));
-        }
-        for samples in LONG {
-            let quarters = (0..QUARTERS).map(|quarter| quarter * samples / QUARTERS);
-            starts.extend(quarters.map(|first| start(samples, first)));
+        let short = SHORT
+            .iter()
+            .map(|&samples| of_samples(samples, samples, scale));
+        let mut starts: Vec<Vec<f64>> = short.flatten().collect();
+        let carriers = scale.carriers_hz.into_iter().filter(|freq| *freq > 0.0);
+        for time_s in carriers.take(CARRIERS).map(f64::recip) {
+            let place = |k: u32| time_s * f64::from(k) / f64::from(PLACES);
+            starts.extend((0..PLACES).map(|k| vec![time_s, place(k)]));
         }
         starts
     }
 
-    /// What moves the begin of the holds by less than a sample changes nothing but at jumps.
-    fn is_chosen(&self, place: usize) -> bool {
-        place == 1
+    /// Whole numbers of samples.
+    fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        let short = SHORT
+            .iter()
+            .map(|&samples| of_samples(samples, samples, scale));
+        let long = LONG
+            .iter()
+            .map(|&samples| of_samples(samples, QUARTERS, scale));
+        short.chain(long).flatten().collect()
+    }
+
+    /// A part of a hold is another hold, and none where it is shorter than a sample.
+    fn grows_in_proportion(&self) -> bool {
+        false
     }
 
     fn left_out(&self, parameter: &str) -> Option<f64> {
