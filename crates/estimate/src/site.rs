@@ -10,6 +10,7 @@ use simgap_signal::{Trend, Window};
 use simgap_simulate::{MemberPath, Run};
 
 use crate::problem::rms_about_mean;
+use crate::products::dot;
 use crate::{EstimateError, Fit, Problem};
 
 /// More levels than this are how numbers are printed, not what a converter does.
@@ -45,10 +46,7 @@ impl Problem {
             Some(mass) => mass * acceleration,
             None => self.force_scale(at, acceleration),
         };
-        let input = match at {
-            Location::Input(name) => self.model.inputs.iter().position(|i| &i.channel == name),
-            _ => None,
-        };
+        let input = self.input_at(at);
         let sent = |i: usize| self.runs.iter().flat_map(move |run| run.inputs[i].iter());
         let (signal, signal_range) = match (channel, input) {
             (Some(i), _) => (
@@ -127,28 +125,22 @@ impl Problem {
         let Some((run, left)) = self.longest(fit) else {
             return [0.0; LINES];
         };
-        let step = run.time_step_s;
-        if let Location::Input(name) = at {
-            let input = self.model.inputs.iter().position(|i| &i.channel == name);
-            let Some(driven) = input.map(|i| rate(&run.inputs[i])) else {
-                return [0.0; LINES];
-            };
-            let measured = run.measured.iter().zip(left);
-            let products = measured.filter_map(|(signal, left)| {
-                let beyond = beyond_gain_and_delay(signal.as_ref()?, left);
-                Some(product(&beyond, &driven))
-            });
-            let products: Vec<Vec<f64>> = products.collect();
-            let products: Vec<&[f64]> = products.iter().map(Vec::as_slice).collect();
-            return lines(&products, step);
-        }
-        let channel = self.channel_at(at);
-        let Some((i, signal)) = channel.and_then(|i| Some((i, run.measured.get(i)?.as_ref()?)))
-        else {
-            return [0.0; LINES];
+        let measured = |i: usize| run.measured.get(i).and_then(Option::as_ref);
+        let products: Vec<Vec<f64>> = match (self.channel_at(at), self.input_at(at)) {
+            (Some(i), _) => measured(i).map_or_else(Vec::new, |signal| {
+                vec![product(&left[i], signal), product(&left[i], &rate(signal))]
+            }),
+            (None, Some(input)) => {
+                let driven = rate(&run.inputs[input]);
+                let channels = left.iter().enumerate();
+                let beyond = channels
+                    .filter_map(|(i, left)| Some(beyond_gain_and_delay(measured(i)?, left)));
+                beyond.map(|beyond| product(&beyond, &driven)).collect()
+            }
+            (None, None) => vec![],
         };
-        let [of_signal, of_rate] = [product(&left[i], signal), product(&left[i], &rate(signal))];
-        lines(&[&of_signal, &of_rate], step)
+        let products: Vec<&[f64]> = products.iter().map(Vec::as_slice).collect();
+        lines(&products, run.time_step_s)
     }
 
     /// The longest run, and what a fit leaves of each of its channels.
@@ -160,6 +152,13 @@ impl Problem {
     fn channel_at(&self, at: &Location) -> Option<usize> {
         match at {
             Location::Channel(name) => self.model.output_index(name),
+            _ => None,
+        }
+    }
+
+    fn input_at(&self, at: &Location) -> Option<usize> {
+        match at {
+            Location::Input(name) => self.model.inputs.iter().position(|i| &i.channel == name),
             _ => None,
         }
     }
@@ -202,7 +201,6 @@ fn rate(signal: &[f64]) -> Vec<f64> {
 fn beyond_gain_and_delay(measured: &[f64], left: &[f64]) -> Vec<f64> {
     let predicted: Vec<f64> = measured.iter().zip(left).map(|(y, e)| y - e).collect();
     let rate = rate(&predicted);
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let late = |samples: usize| {
         let shown = measured.get(samples..)?;
         let [y, r] = [&predicted, &rate].map(|signal| &signal[..shown.len()]);

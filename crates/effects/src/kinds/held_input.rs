@@ -38,6 +38,13 @@ fn of_samples(samples: usize, places: usize, scale: &SiteScale) -> Vec<Vec<f64>>
     (0..places).map(|place| values(place).to_vec()).collect()
 }
 
+/// Holds of few samples, the first one at every place.
+fn short(scale: &SiteScale) -> impl Iterator<Item = Vec<f64>> + use<'_> {
+    SHORT
+        .into_iter()
+        .flat_map(|samples| of_samples(samples, samples, scale))
+}
+
 struct Hold {
     time_s: f64,
     start_s: f64,
@@ -145,10 +152,7 @@ impl Effect for HeldInput {
 
     /// Few samples, and the times of carriers of what is left.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let short = SHORT
-            .iter()
-            .map(|&samples| of_samples(samples, samples, scale));
-        let mut starts: Vec<Vec<f64>> = short.flatten().collect();
+        let mut starts: Vec<Vec<f64>> = short(scale).collect();
         let carriers = scale.carriers_hz.into_iter().filter(|freq| *freq > 0.0);
         for time_s in carriers.take(CARRIERS).map(f64::recip) {
             let place = |k: u32| time_s * f64::from(k) / f64::from(PLACES);
@@ -159,13 +163,10 @@ impl Effect for HeldInput {
 
     /// Whole numbers of samples.
     fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let short = SHORT
-            .iter()
-            .map(|&samples| of_samples(samples, samples, scale));
         let long = LONG
-            .iter()
-            .map(|&samples| of_samples(samples, QUARTERS, scale));
-        short.chain(long).flatten().collect()
+            .into_iter()
+            .flat_map(|samples| of_samples(samples, QUARTERS, scale));
+        short(scale).chain(long).collect()
     }
 
     /// A part of a hold is another hold, and none where it is shorter than a sample.
