@@ -16,15 +16,23 @@ use crate::{Run, SimulateError, Simulator};
 pub(crate) struct Workshop<'a> {
     propagators: Vec<(StructuralMatrices, f64, Arc<ExactPropagator>)>,
     drives: Vec<(DriveKey<'a>, Arc<Drive>)>,
+    /// Of a simulator, told apart by where it is, at a step.
+    systems: HashMap<(*const Simulator, u64), System>,
     /// Of a simulator in a run, both told apart by where they are.
     pairs: HashMap<(*const Simulator, *const Run), Pair>,
 }
 
-/// What simulations of one simulator in one run share.
+/// What simulations of one simulator share.
 #[derive(Clone)]
-struct Pair {
+struct System {
     stiffness: Arc<Mat<f64>>,
     propagator: Arc<ExactPropagator>,
+}
+
+/// What those of one simulator in one run share besides.
+#[derive(Clone)]
+struct Pair {
+    system: System,
     drive: Arc<Drive>,
 }
 
@@ -47,6 +55,25 @@ impl<'a> Workshop<'a> {
         let entry = (matrices.clone(), step, Arc::clone(&propagator));
         self.propagators.push(entry);
         Ok(propagator)
+    }
+
+    fn system(
+        &mut self,
+        simulator: &'a Simulator,
+        time_step_s: f64,
+    ) -> Result<System, SimulateError> {
+        let key = (std::ptr::from_ref(simulator), time_step_s.to_bits());
+        if let Some(system) = self.systems.get(&key) {
+            return Ok(system.clone());
+        }
+        let matrices = simulator.model.tangent_matrices()?;
+        let step = time_step_s / simulator.substeps as f64;
+        let system = System {
+            propagator: self.propagator(&matrices, step)?,
+            stiffness: Arc::new(matrices.stiffness_matrix),
+        };
+        self.systems.insert(key, system.clone());
+        Ok(system)
     }
 
     fn drive(
@@ -76,7 +103,7 @@ impl<'a> Workshop<'a> {
             let value = |i: usize| initial.get(i).copied().unwrap_or(0.0);
             let values: Vec<f64> = (from..from + known).map(value).collect();
             following(
-                &pair.stiffness,
+                &pair.system.stiffness,
                 values,
                 simulator.added.iter().map(|s| s[k]),
             )
@@ -84,7 +111,7 @@ impl<'a> Workshop<'a> {
         Ok(Prepared {
             displacement: part(0, 0),
             velocity: part(known, 1),
-            propagator: pair.propagator,
+            propagator: pair.system.propagator,
             drive: pair.drive,
         })
     }
@@ -94,12 +121,9 @@ impl<'a> Workshop<'a> {
         if let Some(pair) = self.pairs.get(&key) {
             return Ok(pair.clone());
         }
-        let matrices = simulator.model.tangent_matrices()?;
-        let step = run.time_step_s / simulator.substeps as f64;
         let pair = Pair {
-            propagator: self.propagator(&matrices, step)?,
+            system: self.system(simulator, run.time_step_s)?,
             drive: self.drive(simulator, run)?,
-            stiffness: Arc::new(matrices.stiffness_matrix),
         };
         self.pairs.insert(key, pair.clone());
         Ok(pair)

@@ -23,10 +23,12 @@ const FINISHED: usize = 6;
 const SMALL: f64 = 0.1;
 
 impl Search<'_> {
-    /// Laws of the machine fitted to stretches of the records, to longer ones, and then to whole records. Best first.
+    /// Laws of the machine fitted to stretches of the records, to longer ones, and then to whole records, as far as any of them could
+    /// be likelier than what is known. Best first.
     pub(crate) fn multiple_shooting(
         &self,
         base: &CandidateModel,
+        known: Option<&CandidateModel>,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let mut cut = Cut::of(self.problem);
         let is_law = |candidate: &Candidate| candidate.effect.family().is_law();
@@ -36,10 +38,11 @@ impl Search<'_> {
         let wide = self.wide_options();
         let begun = cut.begin(self.problem, &straight(base), &self.options)?;
         let mut begun = begun.estimate;
-        // Parameters that are re-estimated may hide a law at first: in the shortest stretches it is looked for beside those of the
-        // model as well.
-        let mut found = self.fit_beside(&begun, &cut, &self.options)?.1;
+        let mut found = vec![];
         let mut losses = self.loss_laws(&begun);
+        // With a start of its own for each stretch a set leaves no more than over whole records, and its values cost something.
+        let known = known.map_or(f64::NEG_INFINITY, CandidateModel::log_posterior);
+        let may_lead = |set: &CandidateModel| at_estimate(set) > known;
         while !cut.is_whole() {
             // What was found in stretches alone says nothing of whole records.
             if self.is_spent() {
@@ -47,13 +50,19 @@ impl Search<'_> {
             }
             let (parameters, mut sets) = self.fit_beside(&begun, &cut, &wide)?;
             let of_losses = fit_long(&cut.apply(self.problem), &losses, &wide).into_iter();
-            losses = of_losses.map(|fit| cut.of_joined(&fit.estimate)).collect();
+            let of_losses = of_losses.map(|fit| self.candidate_model(fit));
+            let of_losses: Vec<CandidateModel> = of_losses.filter(|set| may_lead(set)).collect();
+            let of_joined = |set: &CandidateModel| cut.of_joined(&set.fit.estimate);
+            losses = of_losses.iter().map(of_joined).collect();
             sets.append(&mut found);
+            sets.retain(|set| may_lead(set));
             rank_in_stretches(&mut sets);
             sets.truncate(FINISHED);
-            begun = cut.of_joined(&parameters.fit.estimate);
-            let starts = sets.iter().map(|set| cut.of_joined(&set.fit.estimate));
-            let starts: Vec<Start> = starts.collect();
+            if sets.is_empty() && losses.is_empty() && !may_lead(&parameters) {
+                return Ok(vec![]);
+            }
+            begun = of_joined(&parameters);
+            let starts: Vec<Start> = sets.iter().map(of_joined).collect();
             cut = cut.joined();
             let carried = fit_long(&cut.apply(self.problem), &starts, &wide).into_iter();
             found = carried.map(|fit| self.candidate_model(fit)).collect();
@@ -124,11 +133,15 @@ impl Search<'_> {
     }
 }
 
+/// Log posterior of a set at its estimate: more than that of the set, by what its values cost.
+fn at_estimate(set: &CandidateModel) -> f64 {
+    set.log_prior - set.fit.objective
+}
+
 /// Sorts sets that were fitted to the same stretches by their posterior at the estimate, best first, and keeps the best fit of each.
 /// Their marginal likelihoods do not compare them: with a start of its own for each of many stretches, most of its Occam
 /// factor is how well the starts are known, which speaks against every set that leaves less.
 fn rank_in_stretches(sets: &mut Vec<CandidateModel>) {
-    let at_estimate = |set: &CandidateModel| set.log_prior - set.fit.objective;
     sets.sort_by(|a, b| {
         let by_posterior = at_estimate(b).total_cmp(&at_estimate(a));
         by_posterior.then_with(|| a.key().cmp(&b.key()))
