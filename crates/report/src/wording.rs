@@ -155,7 +155,7 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
 }
 
 /// "Coulomb friction of 20.4 ± 0.3 N between carriage and ground explains 94 % of the gap on data
-/// it was not fitted to", without a full stop.
+/// it was not fitted to", without a full stop. Where that gap has grown, what does it is the training records.
 fn explains(effects: &[NamedEffect], closed: f64) -> String {
     let names: Vec<String> = effects.iter().map(with_figure).collect();
     let alone = effects.len() == 1;
@@ -166,15 +166,18 @@ fn explains(effects: &[NamedEffect], closed: f64) -> String {
     } else {
         ("explain", "they were")
     };
+    let head = sentence(&list(&names));
+    let head = head.trim_end_matches('.');
+    if closed < 0.0 {
+        return format!(
+            "{head}{likely} {verb} the training records best, and not the gap on data {they} not fitted to"
+        );
+    }
     let amount = match percent(closed) {
-        text if !closed.is_finite() || text.starts_with(['<', '−']) => "part".to_owned(),
+        text if !closed.is_finite() || text.starts_with('<') => "part".to_owned(),
         text => text.replace("> ", "more than "),
     };
-    let head = sentence(&list(&names));
-    format!(
-        "{}{likely} {verb} {amount} of the gap on data {they} not fitted to",
-        head.trim_end_matches('.')
-    )
+    format!("{head}{likely} {verb} {amount} of the gap on data {they} not fitted to")
 }
 
 /// An effect with the one figure that was fitted: "Coulomb friction of 20.4 ± 0.3 N between carriage and ground".

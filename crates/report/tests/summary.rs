@@ -41,6 +41,23 @@ fn verify_summaries_are_short_and_narrow() {
     }
 }
 
+/// On data that it was not fitted to an answer may be worse than the model as given: it explains nothing there.
+#[test]
+fn verify_a_gap_that_grows_is_not_explained() {
+    let mut d = common::effect();
+    d.gap.closed = -0.375;
+    let text = summary_text(&d, Styles::plain());
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let words = words.join(" ");
+    assert!(
+        words.contains(
+            "explains the training records best, and not the gap on data it was not fitted to"
+        ),
+        "{text}"
+    );
+    assert!(!words.contains("of the gap on data"), "{text}");
+}
+
 #[test]
 fn verify_colours_are_all_that_ansi_adds() {
     let d = common::effect();
