@@ -288,12 +288,11 @@ impl<'a> Search<'a> {
         if !self.is_settled(&pool)? {
             step("single effects in stretches");
             // Where stretches cannot be simulated, nothing is found in them.
-            let known = pool.first();
+            let known = pool
+                .first()
+                .map_or(f64::NEG_INFINITY, CandidateModel::log_posterior);
             let found = self.multiple_shooting(base, known).unwrap_or_default();
-            let is_led = |set: &&CandidateModel| {
-                known.is_none_or(|k| set.log_posterior() > k.log_posterior())
-            };
-            let leads = found.first().filter(is_led);
+            let leads = found.first().filter(|set| set.log_posterior() > known);
             if let Some(best) = leads {
                 pool.extend(self.extend(best, FITTED[1])?);
             }

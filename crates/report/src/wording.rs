@@ -155,7 +155,7 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
 }
 
 /// "Coulomb friction of 20.4 ± 0.3 N between carriage and ground explains 94 % of the gap on data
-/// it was not fitted to", without a full stop. Where that gap has grown, what does it is the training records.
+/// it was not fitted to", without a full stop. Where that gap has grown, it is the training records that are explained.
 fn explains(effects: &[NamedEffect], closed: f64) -> String {
     let names: Vec<String> = effects.iter().map(with_figure).collect();
     let alone = effects.len() == 1;

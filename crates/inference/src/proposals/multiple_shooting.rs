@@ -24,11 +24,11 @@ const SMALL: f64 = 0.1;
 
 impl Search<'_> {
     /// Laws of the machine fitted to stretches of the records, to longer ones, and then to whole records, as far as any of them could
-    /// be likelier than what is known. Best first.
+    /// be likelier than what is known, by its log posterior. Best first.
     pub(crate) fn multiple_shooting(
         &self,
         base: &CandidateModel,
-        known: Option<&CandidateModel>,
+        known: f64,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let mut cut = Cut::of(self.problem);
         let is_law = |candidate: &Candidate| candidate.effect.family().is_law();
@@ -41,21 +41,23 @@ impl Search<'_> {
         let mut found = vec![];
         let mut losses = self.loss_laws(&begun);
         // With a start of its own for each stretch a set leaves no more than over whole records, and its values cost something.
-        let known = known.map_or(f64::NEG_INFINITY, CandidateModel::log_posterior);
         let may_lead = |set: &CandidateModel| at_estimate(set) > known;
+        let fitted = |problem: &Problem, starts: &[Start]| -> Vec<CandidateModel> {
+            let fits = fit_long(problem, starts, &wide).into_iter();
+            fits.map(|fit| self.candidate_model(fit)).collect()
+        };
         while !cut.is_whole() {
             // What was found in stretches alone says nothing of whole records.
             if self.is_spent() {
                 return Ok(vec![]);
             }
             let (parameters, mut sets) = self.fit_beside(&begun, &cut, &wide)?;
-            let of_losses = fit_long(&cut.apply(self.problem), &losses, &wide).into_iter();
-            let of_losses = of_losses.map(|fit| self.candidate_model(fit));
-            let of_losses: Vec<CandidateModel> = of_losses.filter(|set| may_lead(set)).collect();
+            let mut of_losses = fitted(&cut.apply(self.problem), &losses);
+            of_losses.retain(may_lead);
             let of_joined = |set: &CandidateModel| cut.of_joined(&set.fit.estimate);
             losses = of_losses.iter().map(of_joined).collect();
             sets.append(&mut found);
-            sets.retain(|set| may_lead(set));
+            sets.retain(may_lead);
             rank_in_stretches(&mut sets);
             sets.truncate(FINISHED);
             if sets.is_empty() && losses.is_empty() && !may_lead(&parameters) {
@@ -64,11 +66,9 @@ impl Search<'_> {
             begun = of_joined(&parameters);
             let starts: Vec<Start> = sets.iter().map(of_joined).collect();
             cut = cut.joined();
-            let carried = fit_long(&cut.apply(self.problem), &starts, &wide).into_iter();
-            found = carried.map(|fit| self.candidate_model(fit)).collect();
+            found = fitted(&cut.apply(self.problem), &starts);
         }
-        let whole = fit_long(self.problem, &losses, &wide).into_iter();
-        found.extend(whole.map(|fit| self.candidate_model(fit)));
+        found.extend(fitted(self.problem, &losses));
         let mut sets = self.with_parameters_named(found);
 
         rank(&mut sets);
