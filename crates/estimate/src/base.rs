@@ -70,6 +70,41 @@ pub(crate) struct Regressor {
     pub(crate) run: Option<usize>,
 }
 
+/// Columns past what the nuisance explains of them.
+pub(crate) struct Past {
+    /// Energy of each column before.
+    own: Vec<f64>,
+    /// S of (1) of [`score`](crate::score()).
+    free: Mat<f64>,
+    /// b of it.
+    right: Vec<f64>,
+}
+
+impl Past {
+    /// Amplitudes of some of the columns and the energy bᵀâ that they explain together; `None` where the nuisance explains one of them.
+    pub(crate) fn amplitudes(&self, set: &[usize]) -> Option<(Vec<f64>, f64)> {
+        let keeps = |share: f64| set.iter().all(|&i| self.kept(i) > share * self.own[i]);
+        if !keeps(NEARLY_HIDDEN) {
+            return None;
+        }
+        let free = Mat::from_fn(set.len(), set.len(), |i, j| match i == j {
+            true => self.kept(set[i]),
+            false => self.free[(set[i], set[j])],
+        });
+        let right = Mat::from_fn(set.len(), 1, |i, _| self.right[set[i]]);
+        let solution = free.llt(Side::Lower).ok()?.solve(&right);
+        let amplitude: Vec<f64> = (0..set.len()).map(|i| solution[(i, 0)]).collect();
+        let energy = amplitude.iter().zip(set).map(|(a, &i)| a * self.right[i]);
+        let energy = energy.sum();
+        (keeps(HIDDEN) || energy > TELLS).then_some((amplitude, energy))
+    }
+
+    /// Energy that a column keeps, with a whisper on it: two that are alike can be solved for.
+    fn kept(&self, i: usize) -> f64 {
+        self.free[(i, i)] * (1.0 + 1e-9)
+    }
+}
+
 /// The normal equations of a set at a fit of it.
 pub(crate) struct LinearSystem {
     pub(crate) layout: Layout,
@@ -283,6 +318,12 @@ impl Base<'_> {
         in_common: &InCommon,
         columns: &[Regressor],
     ) -> Option<(Vec<f64>, f64)> {
+        let all: Vec<usize> = (0..columns.len()).collect();
+        self.past(in_common, columns).amplitudes(&all)
+    }
+
+    /// What columns keep past the nuisance: solved for once, for all sets of some of them.
+    pub(crate) fn past(&self, in_common: &InCommon, columns: &[Regressor]) -> Past {
         let (k, len) = (columns.len(), self.layout.len());
         let mut cross = Mat::<f64>::zeros(len, k);
         let mut own = Mat::<f64>::zeros(k, k);
@@ -305,28 +346,17 @@ impl Base<'_> {
             }
         }
         let projected = self.past_nuisance(&cross);
-        let taken = cross.transpose() * &projected;
-        let free = Mat::from_fn(k, k, |i, j| {
-            let value = own[(i, j)] - taken[(i, j)];
-            if i == j { value * (1.0 + 1e-9) } else { value }
-        });
-        let keeps = |share: f64| (0..k).all(|i| free[(i, i)] > share * own[(i, i)]);
-        if !keeps(NEARLY_HIDDEN) {
-            return None;
+        let free = &own - cross.transpose() * &projected;
+        for (j, right) in right.iter_mut().enumerate() {
+            *right -= (0..len)
+                .map(|l| projected[(l, j)] * self.gradient[l])
+                .sum::<f64>();
         }
-        let b: Vec<f64> = (0..k)
-            .map(|j| {
-                let taken: f64 = (0..len).map(|l| projected[(l, j)] * self.gradient[l]).sum();
-                right[j] - taken
-            })
-            .collect();
-        let solution = free
-            .llt(Side::Lower)
-            .ok()?
-            .solve(Mat::from_fn(k, 1, |i, _| b[i]));
-        let amplitude: Vec<f64> = (0..k).map(|i| solution[(i, 0)]).collect();
-        let energy = amplitude.iter().zip(&b).map(|(a, b)| a * b).sum();
-        (keeps(HIDDEN) || energy > TELLS).then_some((amplitude, energy))
+        Past {
+            own: (0..k).map(|i| own[(i, i)]).collect(),
+            free,
+            right,
+        }
     }
 
     /// H⁻¹ times columns of JᵀW.

@@ -1,12 +1,13 @@
 //! What several further effects would bring together, without fitting them.
 //!
 //! Friction alone may fit with the wrong sign and a quadratic damping alone with a sixth of its value, where both together
-//! explain a gap. (1) of [`score`](crate::score()) holds for the columns C of several effects as for those of one: all pairs
-//! are scored from the same inner products, and the best pairs with every third.
+//! explain a gap. (1) of [`score`](crate::score()) holds for the columns C of several effects as for those of one: all columns are
+//! taken past the nuisance together, and then pairs, and the best pairs with every third, are scored by their rows and columns of S alone.
 
+use rayon::prelude::*;
 use simgap_effects::Placed;
 
-use crate::base::{Base, InCommon, Regressor, Trial};
+use crate::base::{Base, Past, Regressor, Trial};
 use crate::score::{Way, trials, way};
 use crate::{Candidate, EstimateError};
 
@@ -46,17 +47,18 @@ pub fn joint_scores(
     shapes: &[(Candidate, Vec<f64>)],
     most: usize,
 ) -> Result<Vec<JointScore>, EstimateError> {
-    let mut columns: Vec<Column<'_>> = vec![];
-    let mut signals = vec![];
-    for (candidate, shape) in shapes {
+    let simulated = shapes.par_iter().filter_map(|(candidate, shape)| {
         let Way::BySize(sizes) = way(candidate, shape) else {
-            continue;
+            return None;
         };
         let trial: Vec<Trial> = trials(candidate, shape);
         // A trial from which the plant runs away explains nothing.
-        let Ok(found) = base.columns(candidate, &trial) else {
-            continue;
-        };
+        let found = base.columns(candidate, &trial).ok()?;
+        Some((candidate, shape, sizes, found))
+    });
+    let mut columns: Vec<Column<'_>> = vec![];
+    let mut signals = vec![];
+    for (candidate, shape, sizes, found) in simulated.collect::<Vec<_>>() {
         columns.push(Column {
             candidate,
             shape,
@@ -65,8 +67,9 @@ pub fn joint_scores(
         });
         signals.extend(found);
     }
-    let in_common = base.in_common(&signals);
-    let scored = |set: &[usize]| base.joint_score(&columns, &in_common, set);
+    let everywhere = (0..signals.len()).map(|trial| Regressor { trial, run: None });
+    let past = base.past(&base.in_common(&signals), &everywhere.collect::<Vec<_>>());
+    let scored = |set: &[usize]| base.joint_score(&columns, &past, set);
     let mut pairs: Vec<(Vec<usize>, JointScore)> = vec![];
     for i in 0..columns.len() {
         for j in i + 1..columns.len() {
@@ -121,7 +124,7 @@ impl Base<'_> {
     fn joint_score(
         &self,
         columns: &[Column<'_>],
-        in_common: &InCommon,
+        past: &Past,
         set: &[usize],
     ) -> Option<JointScore> {
         let of = |k: &usize| &columns[*k];
@@ -137,12 +140,8 @@ impl Base<'_> {
             let first = column.first_trial;
             first..first + column.sizes.len()
         };
-        let regressors: Vec<Regressor> = set
-            .iter()
-            .flat_map(|k| trials_of(of(k)))
-            .map(|trial| Regressor { trial, run: None })
-            .collect();
-        let (amplitudes, energy) = self.amplitudes(in_common, &regressors)?;
+        let trials: Vec<usize> = set.iter().flat_map(|k| trials_of(of(k))).collect();
+        let (amplitudes, energy) = past.amplitudes(&trials)?;
         let mut amplitudes = amplitudes.into_iter();
         let mut starts = Vec::with_capacity(set.len());
         for column in set.iter().map(of) {

@@ -2,8 +2,6 @@
 
 use simgap_model::BetweenSamples;
 
-use crate::Run;
-
 /// Forces on the masses and motion of the bases, samples × masses or bases, row-major.
 #[derive(Default)]
 pub(crate) struct Drive {
@@ -43,11 +41,9 @@ impl Drive {
     }
 }
 
-/// What a drive depends on: two simulators with the same key have the same drive.
+/// What a drive depends on: two simulators with the same key have the same drive in each run.
 #[derive(PartialEq)]
 pub(crate) struct DriveKey<'a> {
-    /// Runs are told apart by where they are.
-    pub(crate) run: *const Run,
     pub(crate) input_effects: &'a [(&'static str, Vec<f64>)],
     pub(crate) between_samples: Vec<BetweenSamples>,
     pub(crate) mapped_inputs: Vec<usize>,

@@ -9,9 +9,8 @@ use crate::drive::{Coupling, Drive, DriveKey, derivative, straighten};
 use crate::{Run, SimulateError, Simulator};
 
 impl Simulator {
-    pub(crate) fn drive_key<'a>(&'a self, run: &Run) -> Result<DriveKey<'a>, SimulateError> {
+    pub(crate) fn drive_key(&self) -> Result<DriveKey<'_>, SimulateError> {
         Ok(DriveKey {
-            run,
             input_effects: &self.input_effects,
             between_samples: self
                 .model
@@ -50,8 +49,8 @@ impl Simulator {
         inputs
     }
 
-    /// Forces on the masses and motion of the bases, sample by sample.
-    pub(crate) fn drive(&self, run: &Run) -> Result<Drive, SimulateError> {
+    /// Forces on the masses and motion of the bases, sample by sample; `key` is that of the simulator.
+    pub(crate) fn drive(&self, run: &Run, key: &DriveKey<'_>) -> Drive {
         let n = self.model.dof_count();
         let inputs = self.inputs(run);
         let mut drive = Drive {
@@ -65,17 +64,16 @@ impl Simulator {
             .filter(|&i| self.model.inputs[i].kind == InputKind::Displacement)
             .collect();
         drive.base_count = base_inputs.len();
-        let add = |drive: &mut Drive, wanted: BetweenSamples| -> Result<(), SimulateError> {
-            let read = self.model.inputs.iter().map(Input::between_samples);
-            let inputs = inputs.iter().zip(read).enumerate();
-            for (i, (signal, _)) in inputs.filter(|(_, (_, read))| *read == wanted) {
-                for (dof, weight) in self.model.input_terms(i)? {
+        let add = |drive: &mut Drive, wanted: BetweenSamples| {
+            let inputs = inputs.iter().zip(&key.between_samples);
+            let read = inputs.zip(&key.input_terms);
+            for ((signal, _), terms) in read.filter(|((_, read), _)| **read == wanted) {
+                for &(dof, weight) in terms {
                     drive.add(wanted, (dof, n), (signal, weight), run.time_step_s);
                 }
             }
-            Ok(())
         };
-        add(&mut drive, BetweenSamples::Smooth)?;
+        add(&mut drive, BetweenSamples::Smooth);
         let motion: Vec<[Vec<f64>; 3]> = base_inputs
             .iter()
             .map(|&i| {
@@ -93,16 +91,16 @@ impl Simulator {
         drive.base_displacement = interleave(0);
         drive.base_velocity = interleave(1);
         drive.base_acceleration = interleave(2);
-        for coupling in self.couplings()? {
+        for coupling in &key.couplings {
             let motion = &motion[coupling.base][coupling.order];
             for (sample, value) in motion.iter().enumerate() {
                 drive.dof_force[sample * n + coupling.dof] += coupling.coefficient * value;
             }
         }
         drive.beyond = straighten(&mut drive.dof_force, n);
-        add(&mut drive, BetweenSamples::Linear)?;
-        add(&mut drive, BetweenSamples::Held)?;
-        Ok(drive)
+        add(&mut drive, BetweenSamples::Linear);
+        add(&mut drive, BetweenSamples::Held);
+        drive
     }
 
     /// Springs, dampers and beams to moving bases: they do k b + c ḃ − m b̈ to the coordinates.

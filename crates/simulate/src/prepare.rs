@@ -15,11 +15,13 @@ use crate::{Run, SimulateError, Simulator};
 #[derive(Default)]
 pub(crate) struct Workshop<'a> {
     propagators: Vec<(StructuralMatrices, f64, Arc<ExactPropagator>)>,
-    drives: Vec<(DriveKey<'a>, Arc<Drive>)>,
-    /// Of a simulator, told apart by where it is, at a step.
+    /// What drives depend on beside the run, and which of these a simulator, told apart by where it is, has.
+    keys: Vec<DriveKey<'a>>,
+    key_of: HashMap<*const Simulator, usize>,
+    /// Of each of these in a run, told apart by where it is.
+    drives: HashMap<(usize, *const Run), Arc<Drive>>,
+    /// Of a simulator at a step.
     systems: HashMap<(*const Simulator, u64), System>,
-    /// Of a simulator in a run, both told apart by where they are.
-    pairs: HashMap<(*const Simulator, *const Run), Pair>,
 }
 
 /// What simulations of one simulator share.
@@ -27,13 +29,6 @@ pub(crate) struct Workshop<'a> {
 struct System {
     stiffness: Arc<Mat<f64>>,
     propagator: Arc<ExactPropagator>,
-}
-
-/// What those of one simulator in one run share besides.
-#[derive(Clone)]
-struct Pair {
-    system: System,
-    drive: Arc<Drive>,
 }
 
 impl<'a> Workshop<'a> {
@@ -81,13 +76,28 @@ impl<'a> Workshop<'a> {
         simulator: &'a Simulator,
         run: &'a Run,
     ) -> Result<Arc<Drive>, SimulateError> {
-        let key = simulator.drive_key(run)?;
-        if let Some((_, drive)) = self.drives.iter().find(|(known, _)| *known == key) {
+        let key = match self.key_of.get(&std::ptr::from_ref(simulator)) {
+            Some(&key) => key,
+            None => self.key(simulator)?,
+        };
+        let place = (key, std::ptr::from_ref(run));
+        if let Some(drive) = self.drives.get(&place) {
             return Ok(Arc::clone(drive));
         }
-        let drive = Arc::new(simulator.drive(run)?);
-        self.drives.push((key, Arc::clone(&drive)));
+        let drive = Arc::new(simulator.drive(run, &self.keys[key]));
+        self.drives.insert(place, Arc::clone(&drive));
         Ok(drive)
+    }
+
+    fn key(&mut self, simulator: &'a Simulator) -> Result<usize, SimulateError> {
+        let key = simulator.drive_key()?;
+        let known = self.keys.iter().position(|known| *known == key);
+        let place = known.unwrap_or_else(|| {
+            self.keys.push(key);
+            self.keys.len() - 1
+        });
+        self.key_of.insert(simulator, place);
+        Ok(place)
     }
 
     /// Prepares a simulation from an initial state of the nominal model.
@@ -97,13 +107,13 @@ impl<'a> Workshop<'a> {
         run: &'a Run,
         initial: &[f64],
     ) -> Result<Prepared, SimulateError> {
-        let pair = self.pair(simulator, run)?;
+        let system = self.system(simulator, run.time_step_s)?;
         let known = simulator.nominal_dofs;
         let part = |from: usize, k: usize| -> Vec<f64> {
             let value = |i: usize| initial.get(i).copied().unwrap_or(0.0);
             let values: Vec<f64> = (from..from + known).map(value).collect();
             following(
-                &pair.system.stiffness,
+                &system.stiffness,
                 values,
                 simulator.added.iter().map(|s| s[k]),
             )
@@ -111,22 +121,9 @@ impl<'a> Workshop<'a> {
         Ok(Prepared {
             displacement: part(0, 0),
             velocity: part(known, 1),
-            propagator: pair.system.propagator,
-            drive: pair.drive,
-        })
-    }
-
-    fn pair(&mut self, simulator: &'a Simulator, run: &'a Run) -> Result<Pair, SimulateError> {
-        let key = (std::ptr::from_ref(simulator), std::ptr::from_ref(run));
-        if let Some(pair) = self.pairs.get(&key) {
-            return Ok(pair.clone());
-        }
-        let pair = Pair {
-            system: self.system(simulator, run.time_step_s)?,
+            propagator: system.propagator,
             drive: self.drive(simulator, run)?,
-        };
-        self.pairs.insert(key, pair.clone());
-        Ok(pair)
+        })
     }
 }
 

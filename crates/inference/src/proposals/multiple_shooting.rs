@@ -46,12 +46,15 @@ impl Search<'_> {
             let fits = fit_long(problem, starts, &wide).into_iter();
             fits.map(|fit| self.candidate_model(fit)).collect()
         };
+        // In the shortest stretches all is nearly linear: what the score of first order does not lead to is looked for in longer ones.
+        let mut from_afar = cut.joined().is_whole();
         while !cut.is_whole() {
             // What was found in stretches alone says nothing of whole records.
             if self.is_spent() {
                 return Ok(vec![]);
             }
-            let (parameters, mut sets) = self.fit_beside(&begun, &cut, &wide)?;
+            let (parameters, mut sets) = self.fit_beside(&begun, &cut, &wide, from_afar)?;
+            from_afar = true;
             let mut of_losses = fitted(&cut.apply(self.problem), &losses);
             of_losses.retain(may_lead);
             let of_joined = |set: &CandidateModel| cut.of_joined(&set.fit.estimate);
@@ -96,12 +99,13 @@ impl Search<'_> {
         laws.filter(|law| law.effects.len() > 1).collect()
     }
 
-    /// Nominal parameters in stretches, and the best laws beside them, alone and together.
+    /// Nominal parameters in stretches, and the best laws beside them: alone by their scores, from afar together and from many values too.
     fn fit_beside(
         &self,
         begun: &Start,
         cut: &Cut,
         options: &FitOptions,
+        from_afar: bool,
     ) -> Result<(CandidateModel, Vec<CandidateModel>), EstimateError> {
         let problem = &cut.apply(self.problem);
         let parameters = fit(problem, begun, options)?;
@@ -117,7 +121,7 @@ impl Search<'_> {
         let parameters = search.candidate_model(parameters);
         let linear = linearise_at(problem, &parameters.fit, &search.options)?;
         let mut found = search.extend_at(&parameters, &linear, FITTED)?;
-        if !self.is_spent() {
+        if from_afar && !self.is_spent() {
             found.extend(search.fit_joint(&parameters, &linear)?);
             found.extend(search.multistart(&parameters, &linear)?);
         }
