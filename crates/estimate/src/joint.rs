@@ -7,9 +7,9 @@
 use rayon::prelude::*;
 use simgap_effects::Placed;
 
+use crate::Candidate;
 use crate::base::{Base, Past, Regressor, Trial};
 use crate::score::{Way, trials, way};
-use crate::{Candidate, EstimateError};
 
 /// Pairs that are scored with every third effect.
 const EXTENDED: usize = 12;
@@ -39,14 +39,12 @@ struct Column<'a> {
 /// Scores pairs and sets of three of the given effects, each in a given shape, best first: the best pairs, and as
 /// many sets of three. Candidates without a size that they are in proportion to are left out, and sets that need a size outside
 /// its bounds.
-///
-/// # Errors
-/// [`EstimateError`] when the model cannot be propagated.
+#[must_use]
 pub fn joint_scores(
     base: &Base<'_>,
     shapes: &[(Candidate, Vec<f64>)],
     most: usize,
-) -> Result<Vec<JointScore>, EstimateError> {
+) -> Vec<JointScore> {
     let simulated = shapes.par_iter().filter_map(|(candidate, shape)| {
         let Way::BySize(sizes) = way(candidate, shape) else {
             return None;
@@ -92,7 +90,7 @@ pub fn joint_scores(
     sort(&mut threes);
     let mut all = various(pairs, &columns, most);
     all.extend(various(threes, &columns, most));
-    Ok(all)
+    all
 }
 
 /// The best of some sets in which no candidate is met again and again.

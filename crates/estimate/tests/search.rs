@@ -7,7 +7,10 @@ mod support;
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
-use simgap_estimate::{Fit, FitOptions, Start, fit, fit_initial_states, linearise_at, score};
+use simgap_estimate::{
+    Candidate, Fit, FitOptions, JointScore, Start, fit, fit_initial_states, joint_scores,
+    linearise_at, score,
+};
 use simgap_model::Location;
 use support::{
     OSCILLATOR, between, candidate, drive, model, noisy, placed, problem, scale, start, truth,
@@ -147,6 +150,69 @@ fn verify_the_score_of_a_linear_effect_is_what_its_fit_gains() {
         assert!(
             (asked / found - 1.0).abs() < 1e-4,
             "{kind}: {asked} asked, {found} found"
+        );
+    }
+}
+
+/// Both act on the output in proportion, together as well. What further candidates there are changes nothing.
+#[test]
+fn verify_the_joint_score_of_linear_effects_is_what_their_fit_gains() {
+    // All columns are solved for at once: what rounding leaves of that.
+    const ROUNDING: f64 = 1e-6;
+    let model = model(OSCILLATOR);
+    let (mass, channel) = (
+        Location::Mass("block".into()),
+        Location::Channel("y".into()),
+    );
+    let both = [
+        placed("constant_force", mass.clone(), &[0.9]),
+        placed("sensor_drift", channel.clone(), &[4e-4]),
+    ];
+    let run = truth(&model, &both, drive(0.01, 400, 6.0), 0.01, &[0.0; 2]);
+    let problem = problem(&model, noisy(&run, 5e-4, 11));
+    let base = fit(&problem, &start(vec![], vec![], &[0.0; 2]), &strict()).unwrap();
+    let linear = linearise_at(&problem, &base, &strict()).unwrap();
+    let leg = || between("block", "ground");
+    let known = [("constant_force", mass), ("sensor_drift", channel)];
+    let further = [
+        ("viscous_damping", leg()),
+        ("quadratic_damping", leg()),
+        ("linear_stiffness", leg()),
+    ];
+    let shapes: Vec<_> = known
+        .into_iter()
+        .chain(further)
+        .map(|(kind, at)| {
+            let candidate = candidate(kind, at);
+            let shape = candidate.effect.starts(&scale()).swap_remove(0);
+            (candidate, shape)
+        })
+        .collect();
+    let is_both = |score: &&JointScore| {
+        let kinds: Vec<&str> = score.starts.iter().map(|p| p.effect.kind()).collect();
+        kinds == ["constant_force", "sensor_drift"]
+    };
+    let of = |shapes: &[(Candidate, Vec<f64>)]| {
+        let scores = joint_scores(&linear, shapes, 16);
+        scores.iter().find(is_both).expect("the pair").clone()
+    };
+    let (alone, among) = (of(&shapes[..2]), of(&shapes));
+    assert!((among.gain / alone.gain - 1.0).abs() < ROUNDING);
+    let mut from = base.estimate.clone();
+    from.effects.extend(among.starts.iter().cloned());
+    let fitted = fit(&problem, &from, &strict()).unwrap();
+    let gained = base.objective - fitted.objective;
+    assert!(
+        (among.gain / gained - 1.0).abs() < 1e-3,
+        "{} for {gained}",
+        among.gain
+    );
+    assert!(gained > 20.0, "{gained} would be too little to tell");
+    for (asked, found) in among.starts.iter().zip(&fitted.estimate.effects) {
+        let (asked, found) = (asked.values[0], found.values[0]);
+        assert!(
+            (asked / found - 1.0).abs() < 1e-4,
+            "{asked} asked, {found} found"
         );
     }
 }

@@ -272,7 +272,7 @@ impl<'a> Search<'a> {
             }
             if size == 0 {
                 next.extend(self.unite(&pool)?);
-                next.extend(self.fit_joint(base, linear)?);
+                next.extend(self.fit_joint(base, linear));
                 rank(&mut next);
                 if !self.is_settled(&next)? {
                     step("pairs from many values");

@@ -122,7 +122,7 @@ impl Search<'_> {
         let linear = linearise_at(problem, &parameters.fit, &search.options)?;
         let mut found = search.extend_at(&parameters, &linear, FITTED)?;
         if from_afar && !self.is_spent() {
-            found.extend(search.fit_joint(&parameters, &linear)?);
+            found.extend(search.fit_joint(&parameters, &linear));
             found.extend(search.multistart(&parameters, &linear)?);
         }
         Ok((parameters, found))

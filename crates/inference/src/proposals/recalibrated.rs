@@ -58,7 +58,7 @@ impl Search<'_> {
         let linear = linearise_at(self.problem, &recalibrated.fit, &wide.options)?;
         let mut found = wide.extend_at(recalibrated, &linear, FITTED)?;
         if !self.is_spent() {
-            found.extend(wide.fit_joint(recalibrated, &linear)?);
+            found.extend(wide.fit_joint(recalibrated, &linear));
         }
         found.push(recalibrated.clone());
         rank(&mut found);

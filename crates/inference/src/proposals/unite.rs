@@ -24,7 +24,7 @@ impl Search<'_> {
         &self,
         base: &CandidateModel,
         linear: &Base<'_>,
-    ) -> Result<Vec<CandidateModel>, EstimateError> {
+    ) -> Vec<CandidateModel> {
         let candidates = self.space.candidates.iter();
         let free = candidates.filter(|(candidate, _)| self.may_hold(base, candidate));
         let shapes: Vec<(Candidate, Vec<f64>)> = free
@@ -33,7 +33,7 @@ impl Search<'_> {
                 shapes.map(move |shape| (candidate.clone(), shape))
             })
             .collect();
-        let scores = joint_scores(linear, &shapes, JOINT)?;
+        let scores = joint_scores(linear, &shapes, JOINT);
         let starts: Vec<Start> = scores
             .into_iter()
             .map(|score| {
@@ -44,7 +44,7 @@ impl Search<'_> {
                     .fold(start, |start, placed| add(&start, placed))
             })
             .collect();
-        Ok(self.fit_all(&starts, linear))
+        self.fit_all(&starts, linear)
     }
 
     /// The best of some sets, with one more effect from afar.
