@@ -76,10 +76,7 @@ impl<'a> Workshop<'a> {
         simulator: &'a Simulator,
         run: &'a Run,
     ) -> Result<Arc<Drive>, SimulateError> {
-        let key = match self.key_of.get(&std::ptr::from_ref(simulator)) {
-            Some(&key) => key,
-            None => self.key(simulator)?,
-        };
+        let key = self.key(simulator)?;
         let place = (key, std::ptr::from_ref(run));
         if let Some(drive) = self.drives.get(&place) {
             return Ok(Arc::clone(drive));
@@ -90,6 +87,9 @@ impl<'a> Workshop<'a> {
     }
 
     fn key(&mut self, simulator: &'a Simulator) -> Result<usize, SimulateError> {
+        if let Some(&key) = self.key_of.get(&std::ptr::from_ref(simulator)) {
+            return Ok(key);
+        }
         let key = simulator.drive_key()?;
         let known = self.keys.iter().position(|known| *known == key);
         let place = known.unwrap_or_else(|| {
