@@ -48,6 +48,41 @@ pub trait LaneObserver {
     fn observe(&mut self, at: &LaneSnapshot<'_>);
 }
 
+/// An observer of any type: the march is the longest code there is to compile, and is compiled once for all of them.
+trait Watch {
+    fn needs_acceleration(&self) -> bool;
+
+    fn reads_displacement(&self, coordinate: usize) -> bool;
+
+    fn observe(&mut self, arch: Arch, at: &LaneSnapshot<'_>);
+}
+
+impl<O: LaneObserver> Watch for O {
+    fn needs_acceleration(&self) -> bool {
+        LaneObserver::needs_acceleration(self)
+    }
+
+    fn reads_displacement(&self, coordinate: usize) -> bool {
+        LaneObserver::reads_displacement(self, coordinate)
+    }
+
+    fn observe(&mut self, arch: Arch, at: &LaneSnapshot<'_>) {
+        arch.dispatch(Observe(self, at));
+    }
+}
+
+/// [`LaneObserver::observe`] in the best instructions there are; a closure would not be inlined into them.
+struct Observe<'a, 'b, O>(&'a mut O, &'a LaneSnapshot<'b>);
+
+impl<O: LaneObserver> WithSimd for Observe<'_, '_, O> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.0.observe(self.1);
+    }
+}
+
 /// Sets of one structure.
 pub struct Batch<'a> {
     sets: Vec<LaneSet<'a>>,
@@ -65,17 +100,26 @@ impl<'a> Batch<'a> {
 
     /// Marches every set from its initial state through its excitation.
     pub fn march(&self, observer: &mut impl LaneObserver) {
+        self.march_watched(observer);
+    }
+
+    fn march_watched(&self, observer: &mut dyn Watch) {
         let arch = Arch::new();
         for (i, sets) in self.sets.chunks(LANES).enumerate() {
             let is_read = |coordinate: usize| observer.reads_displacement(coordinate);
             let block = [i * LANES, self.sample_count];
             let lanes = Lanes::new(arch, sets, block, &is_read);
+            // The unit tests of this crate march nothing: for them the march is compiled for one size only.
             match sets[0].propagator.dof_count {
-                1 => arch.dispatch(March(lanes, [Pack::ZERO; 1], &mut *observer)),
-                2 => arch.dispatch(March(lanes, [Pack::ZERO; 2], &mut *observer)),
-                3 => arch.dispatch(March(lanes, [Pack::ZERO; 3], &mut *observer)),
-                4 => arch.dispatch(March(lanes, [Pack::ZERO; 4], &mut *observer)),
-                n => arch.dispatch(March(lanes, vec![Pack::ZERO; n], &mut *observer)),
+                #[cfg(not(test))]
+                1 => arch.dispatch(March(lanes, [Pack::ZERO; 1], observer)),
+                #[cfg(not(test))]
+                2 => arch.dispatch(March(lanes, [Pack::ZERO; 2], observer)),
+                #[cfg(not(test))]
+                3 => arch.dispatch(March(lanes, [Pack::ZERO; 3], observer)),
+                #[cfg(not(test))]
+                4 => arch.dispatch(March(lanes, [Pack::ZERO; 4], observer)),
+                n => arch.dispatch(March(lanes, vec![Pack::ZERO; n], observer)),
             }
         }
     }
@@ -175,9 +219,9 @@ fn between<S: Simd>(simd: S, from: &[Pack], to: &[Pack], share: f64, out: &mut [
 
 /// The march of a block in the best instructions there are; a closure would not be inlined into
 /// them. The row is one of zeros.
-struct March<'a, 'b, R, O>(Lanes<'b>, R, &'a mut O);
+struct March<'a, 'b, R>(Lanes<'b>, R, &'a mut dyn Watch);
 
-impl<R: Row, O: LaneObserver> WithSimd for March<'_, '_, R, O> {
+impl<R: Row> WithSimd for March<'_, '_, R> {
     type Output = ();
 
     #[inline(always)]
@@ -187,12 +231,7 @@ impl<R: Row, O: LaneObserver> WithSimd for March<'_, '_, R, O> {
 }
 
 #[inline(always)]
-fn march<S: Simd, R: Row>(
-    simd: S,
-    mut lanes: Lanes<'_>,
-    zero: R,
-    observer: &mut impl LaneObserver,
-) {
+fn march<S: Simd, R: Row>(simd: S, mut lanes: Lanes<'_>, zero: R, observer: &mut dyn Watch) {
     let excitation = &lanes.sets[0].excitation;
     let (substeps, bases) = (excitation.substeps.max(1), excitation.base_count);
     let share = 1.0 / substeps as f64;
@@ -258,7 +297,7 @@ impl<R: Row> Seen<R> {
         sample: usize,
         state: &State<R>,
         (force, base): (&R, &[Pack]),
-        observer: &mut impl LaneObserver,
+        observer: &mut dyn Watch,
     ) {
         lanes.block.carried(simd, &mut self.carried);
         for (i, carried) in self.carried.iter_mut().enumerate() {
@@ -275,7 +314,7 @@ impl<R: Row> Seen<R> {
         }
         let (base_displacement, base_velocity) = base.split_at(base.len() / 2);
         let acceleration = self.acceleration.packs();
-        observer.observe(&LaneSnapshot {
+        let at = LaneSnapshot {
             first_set: lanes.first_set,
             set_count: lanes.set_count,
             sample,
@@ -289,6 +328,7 @@ impl<R: Row> Seen<R> {
             element_force: &self.carried,
             base_displacement,
             base_velocity,
-        });
+        };
+        observer.observe(lanes.block.arch, &at);
     }
 }
