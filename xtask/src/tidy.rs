@@ -12,6 +12,7 @@ mod floors;
 mod modules;
 mod references;
 mod sources;
+mod tests_run;
 mod text;
 mod tokens;
 mod workspace;
@@ -28,6 +29,7 @@ pub use sources::{
     files_are_short, integrators_know_no_effect, libraries_are_silent_and_still, nothing_is_unsafe,
     published_numbers_are_only_embedded, who_may_touch_files,
 };
+pub use tests_run::every_test_file_is_run;
 pub use workspace::{Package, Source, Workspace};
 
 /// A rule: from the workspace to what breaks it.
@@ -49,6 +51,7 @@ pub const RULES: &[Rule] = &[
     no_file_imports_itself_over_others,
     every_reference_resolves,
     every_source_listed_is_cited,
+    every_test_file_is_run,
 ];
 
 /// Checks every rule on the workspace this program was built in; one line for each finding.

@@ -7,13 +7,13 @@
     clippy::print_stderr
 )]
 
-mod common;
+use crate::common;
 
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::Stdio;
 
-use common::{Bench, MODEL, record};
+use crate::common::{Bench, MODEL, record};
 
 /// A diagnosis of `A.csv` by `model.toml` into `out`.
 const DIAGNOSE: [&str; 6] = ["diagnose", "model.toml", "--train", "A.csv", "--out", "out"];

@@ -1,11 +1,9 @@
 //! `simgap compare`: what it writes and prints, and what it refuses.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::fmt::Write as _;
 
-use common::{Bench, columns};
+use crate::common::{Bench, columns};
 use serde_json::Value;
 
 const ARGUMENTS: [&str; 5] = ["compare", "--measured", "m.csv", "--simulated", "s.csv"];

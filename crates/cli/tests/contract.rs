@@ -1,14 +1,12 @@
 //! What `docs/contract.md` promises of a diagnosis, checked on the embedded demo.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::sync::OnceLock;
 
 use serde_json::Value;
 
-use common::schema::{check_schema, list, names, number, string};
-use common::{Bench, columns, rms, std_dev};
+use crate::common::schema::{check_schema, list, names, number, string};
+use crate::common::{Bench, columns, rms, std_dev};
 
 /// The demo, written and diagnosed once for all tests of this file.
 fn demo() -> &'static Demo {

@@ -2,14 +2,12 @@
 //! oscillator with dry friction that its model lacks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::sync::OnceLock;
 
 use serde_json::Value;
 
-use common::schema::{check_schema, diagnosis, list, names, number, string};
-use common::{Bench, MODEL, columns, rms, std_dev, text};
+use crate::common::schema::{check_schema, diagnosis, list, names, number, string};
+use crate::common::{Bench, MODEL, columns, rms, std_dev, text};
 
 /// Records of 5 s at 100 Hz, made by the program itself from a model with friction, then diagnosed
 /// with the model that lacks it; once for all tests of this file.

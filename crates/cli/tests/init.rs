@@ -2,9 +2,7 @@
 //! it, and nothing is overwritten unasked.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
-use common::{Bench, columns, record};
+use crate::common::{Bench, columns, record};
 
 const LIKE: [&str; 4] = ["oscillator", "two-mass", "base", "axis"];
 

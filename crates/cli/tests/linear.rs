@@ -1,9 +1,7 @@
 //! `simgap modes` and `simgap sensitivity`: what they print and write, and what they refuse.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
-use common::{Bench, MODEL};
+use crate::common::{Bench, MODEL};
 use serde_json::Value;
 
 /// The oscillator of the bench: √(800/2) = 20 rad/s, ζ = 4/(2 √1600) = 0.05.

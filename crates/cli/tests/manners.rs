@@ -7,14 +7,12 @@
 )]
 #![cfg(unix)]
 
-mod common;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::os::unix::fs::{FileTypeExt as _, symlink};
 use std::process::{Command, Stdio};
 
-use common::{Bench, record, text};
+use crate::common::{Bench, record, text};
 
 const SIMULATE: [&str; 5] = ["simulate", "model.toml", "--record", "A.csv", "--out"];
 

@@ -8,13 +8,11 @@
     clippy::print_stderr
 )]
 
-mod common;
-
 use std::path::PathBuf;
 
 use serde_json::Value;
 
-use common::Bench;
+use crate::common::Bench;
 
 /// A file of the data, or a loud word that it is not there.
 fn data(name: &str) -> Option<PathBuf> {

@@ -1,9 +1,7 @@
 //! Records of loggers and measurement programs, given to the commands.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
-use common::{Bench, record};
+use crate::common::{Bench, record};
 
 /// The record of the bench as a logger would write it: other names, units in a row of their own,
 /// semicolons, decimal commas.

@@ -1,10 +1,9 @@
 //! What the audit of records against a model says, and when it is silent.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
-mod common;
+use crate::common;
 
-use common::{plant, record};
+use crate::common::{plant, record};
 use simgap_diagnose::audit::audit;
 use simgap_model::Model;
 use simgap_record::{AuditFinding, AuditTopic, Channel, Record};

@@ -1,10 +1,7 @@
 //! What check records say of an answer that the training records gave.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
-mod common;
-
-use common::{placed, plant, record};
+use crate::common::{placed, plant, record};
 use simgap_diagnose::{Outcome, Request, Status, diagnose};
 use simgap_effects::Placed;
 use simgap_model::Location;

@@ -1,10 +1,7 @@
 //! Records without an input: a plant that is let go and rings down.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
-mod common;
-
-use common::{Noise, named, placed};
+use crate::common::{Noise, named, placed};
 use simgap_diagnose::{Limit, Outcome, Request, Status, diagnose};
 use simgap_effects::Placed;
 use simgap_model::{Location, Model};

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
-use common::{diagnosed, diagnosed_as, diagnosed_with_noise, ground, named, placed};
+use crate::common::{diagnosed, diagnosed_as, diagnosed_with_noise, ground, named, placed};
 use simgap_diagnose::Status;
 use simgap_model::{Location, Model};
 

@@ -1,12 +1,11 @@
 //! Samples that were missing and filled are no defect of the measurement chain.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
-mod common;
+use crate::common;
 
 use std::fmt::Write as _;
 
-use common::{named, placed, plant, record};
+use crate::common::{named, placed, plant, record};
 use simgap_diagnose::{Request, diagnose};
 use simgap_record::{Mend, ReadOptions, Record, parse_file};
 

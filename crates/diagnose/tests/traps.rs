@@ -1,9 +1,9 @@
 //! What users of grey-box tools have been misled by, each on records made for it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
+use crate::common;
 
-use common::{diagnosed, diagnosed_as, diagnosed_with_noise, ground, named, placed};
+use crate::common::{diagnosed, diagnosed_as, diagnosed_with_noise, ground, named, placed};
 use simgap_diagnose::Status;
 use simgap_model::{Location, Model};
 
@@ -20,7 +20,7 @@ fn channel(name: &str) -> Location {
 #[test]
 fn verify_a_candidate_that_changes_nothing_is_no_candidate() {
     let truth = [placed("cubic_stiffness", ground(), &[2e7])];
-    let outcome = diagnosed(&truth, &[]);
+    let outcome = diagnosed_as(&common::plant(), &truth, &[], COARSE_S);
     assert_eq!(named(&outcome), [("cubic_stiffness".into(), ground())]);
     let spare = Location::Input("spare".into());
     for candidate in &outcome.diagnosis.candidates {
@@ -105,7 +105,7 @@ fn verify_a_wrong_law_that_fits_is_told_as_such() {
     let truth = [placed("quadratic_damping", ground(), &[250.0])];
     let known = diagnosed(&truth, &[]);
     assert_eq!(named(&known), [("quadratic_damping".into(), ground())]);
-    let outcome = diagnosed(&truth, &["quadratic_damping"]);
+    let outcome = diagnosed_as(&common::plant(), &truth, &["quadratic_damping"], COARSE_S);
     let verdict = &outcome.diagnosis.verdict;
     let honest = verdict.status == Status::Unknown || !verdict.complete;
     assert!(honest, "{verdict:?}");
@@ -167,7 +167,7 @@ fn verify_a_law_is_not_made_of_a_spring_that_is_gone() {
 #[test]
 fn verify_a_damper_that_is_off_is_no_asymmetry() {
     let truth = [placed("damping_error", ground(), &[1.3])];
-    let outcome = diagnosed(&truth, &["damping_error"]);
+    let outcome = diagnosed_as(&common::plant(), &truth, &["damping_error"], COARSE_S);
     let verdict = &outcome.diagnosis.verdict;
     assert_eq!(verdict.status, Status::Unknown, "{verdict:?}");
     let told = verdict.description.iter();
@@ -263,7 +263,7 @@ fn verify_an_alternation_with_one_half_right_is_one_fault() {
 #[test]
 fn verify_a_stop_is_found_with_its_damping() {
     let truth = [placed("end_stop", ground(), &[2.5e-3, 1.0, 4e4, 1e-3])];
-    let outcome = diagnosed(&truth, &[]);
+    let outcome = diagnosed_as(&common::plant(), &truth, &[], COARSE_S);
     assert_eq!(named(&outcome), [("end_stop".to_string(), ground())]);
     let values = &outcome.diagnosis.verdict.effects[0].parameters;
     for (k, needed) in [(0, 2.5e-3), (2, 4e4), (3, 1e-3)] {

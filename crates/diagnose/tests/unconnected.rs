@@ -1,10 +1,7 @@
 //! A sensor that is not connected: what stands in its channel is noise of the amplifier.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
-mod common;
-
-use common::{Noise, plant, record};
+use crate::common::{Noise, plant, record};
 use simgap_diagnose::{Request, Status, diagnose};
 use simgap_record::{Channel, Record};
 

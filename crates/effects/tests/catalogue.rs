@@ -2,11 +2,11 @@
 //! the moment it is listed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeSet;
 
-use common::{force, hydraulic, model, model_at, scale, simulator};
+use crate::common::{force, hydraulic, model, model_at, scale, simulator};
 use simgap_effects::{
     Action, Effect, Family, Parameter, Placed, Sampled, SiteKind, SiteScale, catalogue, sites,
 };

@@ -1,11 +1,9 @@
 //! Each law against its closed form.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
 use std::f64::consts::{E, PI};
 
-use common::{effect, force, law, map, model, through};
+use crate::common::{effect, force, law, map, model, through};
 use simgap_effects::Action;
 use simgap_integrate::exact::ForceLaw;
 use simgap_model::{Location, Model};

@@ -1,9 +1,7 @@
 //! Hydraulic effects against their closed forms.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
-use common::{effect, hydraulic};
+use crate::common::{effect, hydraulic};
 use simgap_effects::{Action, sites};
 use simgap_model::{Model, PRESSURE_UNIT_PA};
 

@@ -2,11 +2,9 @@
 //! against its closed form.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
 use std::f64::consts::{PI, TAU};
 
-use common::{effect, law, map, scale, through};
+use crate::common::{effect, law, map, scale, through};
 use simgap_effects::{Sampled, SiteScale};
 use simgap_integrate::exact::MemberMotion;
 

@@ -1,11 +1,9 @@
 //! What members, clocks and missing dynamics do, each kind against its closed form.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
 use std::f64::consts::{PI, TAU};
 
-use common::{effect, force, law, map, model, scale, through};
+use crate::common::{effect, force, law, map, model, scale, through};
 use simgap_effects::{Action, SiteKind, SiteScale, sites};
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_model::{Location, Model};

@@ -1,9 +1,9 @@
 //! Laws that remember, each against its closed form.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
+use crate::common;
 
-use common::{effect, law};
+use crate::common::{effect, law};
 use proptest::prelude::*;
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
 

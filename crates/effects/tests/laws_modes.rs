@@ -1,11 +1,9 @@
 //! Hidden masses: what an attached mode and a flexible support do to the dynamic stiffness.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::{MODEL, effect, model, scale};
+use crate::common::{MODEL, effect, model, scale};
 use simgap_effects::{Action, SiteScale};
 use simgap_model::{GROUND, Location, Model};
 

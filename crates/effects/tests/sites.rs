@@ -1,9 +1,9 @@
 //! Where effects can sit, and what is said when one cannot.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
+use crate::common;
 
-use common::{MODEL, model};
+use crate::common::{MODEL, model};
 use simgap_effects::{EffectError, Placed, SiteKind, catalogue, places_of, sites};
 use simgap_model::{EffectEntry, Location, Model};
 

@@ -1,12 +1,12 @@
 //! How sure an estimate is: intervals, priors, bounds, directions that nothing shows.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
+use crate::support::{
+    DAMPER, OSCILLATOR, between, drive, model, noisy, placed, problem, start, truth,
+};
 use simgap_effects::Placed;
 use simgap_estimate::{Fit, FitOptions, Start, fit, fit_initial_states_from, spread};
 use simgap_model::Location;
-use support::{DAMPER, OSCILLATOR, between, drive, model, noisy, placed, problem, start, truth};
 
 fn close(wanted: f64) -> impl Fn(f64) -> bool {
     move |value| (value / wanted - 1.0).abs() < 1e-6

@@ -1,13 +1,11 @@
 //! Filled samples count for nothing, and nothing lives in the single samples of a resampled run.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
+use crate::support::{OSCILLATOR, between, drive, model, noisy, placed, start, truth};
 use simgap_effects::{Placed, catalogue};
 use simgap_estimate::{Fit, FitOptions, Problem, Whitening, fit};
 use simgap_model::{Location, Model};
 use simgap_simulate::{Mended, Run};
-use support::{OSCILLATOR, between, drive, model, noisy, placed, start, truth};
 
 const ROWS: usize = 600;
 const NOISE_M: f64 = 1e-5;

@@ -2,19 +2,17 @@
 //! answer every time.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::f64::consts::TAU;
 
+use crate::support::{
+    OSCILLATOR, between, candidate, drive, model, noisy, placed, problem, scale, start, truth,
+};
 use proptest::prelude::*;
 use simgap_estimate::{
     Candidate, Fit, FitOptions, JointScore, Start, fit, fit_initial_states, joint_scores,
     linearise_at, score,
 };
 use simgap_model::Location;
-use support::{
-    OSCILLATOR, between, candidate, drive, model, noisy, placed, problem, scale, start, truth,
-};
 
 fn strict() -> FitOptions {
     FitOptions {

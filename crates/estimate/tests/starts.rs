@@ -1,20 +1,18 @@
 //! Where fits and scores begin: states held by friction, sensitivities from elsewhere, clocks without a line.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::f64::consts::TAU;
 
+use crate::support::{
+    Normal, OSCILLATOR, between, candidate, drive, model, noisy, placed, problem, scale, start,
+    truth,
+};
 use simgap_effects::SiteScale;
 use simgap_estimate::{
     FitOptions, Start, fit, fit_initial_states, linearise_at, score, score_shapes,
 };
 use simgap_model::{Location, Model};
 use simgap_simulate::Run;
-use support::{
-    Normal, OSCILLATOR, between, candidate, drive, model, noisy, placed, problem, scale, start,
-    truth,
-};
 
 /// The oscillator with its velocity measured: no sample says how far out it begins.
 fn seen_by_its_velocity() -> String {

@@ -10,10 +10,7 @@ use simgap_diagnose::Cancel;
 use simgap_fleet::scope::Scope;
 use simgap_fleet::{Counts, FleetError, Plan, Role, Table, Unit, report, run, units};
 
-#[allow(dead_code)]
-mod common;
-
-use common::Fleet;
+use crate::common::Fleet;
 
 fn planned(folder: &Path) -> (Plan, Vec<Unit>) {
     let plan = Plan::read(&folder.join("plan.toml")).unwrap();

@@ -9,10 +9,7 @@ use simgap_fleet::scope::Scope;
 use simgap_fleet::{Fleet, Plan, Role, Row, Table, Unit, encode, report};
 use simgap_model::Model;
 
-#[allow(dead_code)]
-mod common;
-
-use common::{MODEL, Random};
+use crate::common::{MODEL, Random};
 
 const PLACE: &str = "between table and ground";
 

@@ -1,13 +1,11 @@
 //! The adaptive method: accuracy against tolerance, stops at samples, continuous output, refusals.
 #![allow(clippy::unwrap_used)]
 
-mod support;
-
+use crate::support::{free_decay, oscillator};
 use faer::Mat;
 use simgap_integrate::{
     AdaptiveTolerance, Excitation, Method, Problem, Solution, TimeGrid, dormand_prince, simulate,
 };
-use support::{free_decay, oscillator};
 
 const OMEGA: f64 = 15.0;
 const ZETA: f64 = 0.05;

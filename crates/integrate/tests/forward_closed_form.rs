@@ -1,13 +1,11 @@
 //! Forward methods against closed forms: order of convergence and size of the error.
 #![allow(clippy::unwrap_used)]
 
-mod support;
-
+use crate::support::{free_decay, observed_order, oscillator};
 use faer::Mat;
 use simgap_integrate::{
     Excitation, GeneralizedAlpha, Method, Motion, Newmark, Problem, TimeGrid, simulate,
 };
-use support::{free_decay, observed_order, oscillator};
 
 /// All fixed-step methods with their order.
 fn methods() -> Vec<(&'static str, Method, f64)> {

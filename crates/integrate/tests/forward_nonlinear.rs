@@ -1,14 +1,12 @@
 //! Forces of the motion: manufactured solutions, tangents, and what happens when there is none.
 #![allow(clippy::unwrap_used)]
 
-mod support;
-
+use crate::support::{observed_order, oscillator};
 use simgap_integrate::{
     Excitation, GeneralizedAlpha, IntegrateError, Method, Newmark, NonlinearForce, Problem,
     Solution, Tangent, TimeGrid, simulate,
 };
 use simgap_model::StructuralMatrices;
-use support::{observed_order, oscillator};
 
 fn methods() -> Vec<(&'static str, Method, f64)> {
     vec![

@@ -1,15 +1,13 @@
 //! Amplification and dissipation: closed form against the running methods.
 #![allow(clippy::unwrap_used)]
 
-mod support;
-
+use crate::support::oscillator;
 use faer::Mat;
 use simgap_integrate::inverse::PARK_WEIGHTS;
 use simgap_integrate::{
     AdaptiveTolerance, GeneralizedAlpha, Method, Newmark, Problem, TimeGrid, amplification_matrix,
     numerical_dissipation, simulate, spectral_radius,
 };
-use support::oscillator;
 
 const TRAPEZOIDAL: Method = Method::Newmark(Newmark::TRAPEZOIDAL);
 

@@ -1,15 +1,13 @@
 //! Finite differences: what they are exact on, how fast they converge, what they do to sines.
 #![allow(clippy::unwrap_used)]
 
-mod support;
-
+use crate::support::{largest_difference, observed_order};
 use proptest::prelude::*;
 use simgap_integrate::IntegrateError;
 use simgap_integrate::inverse::{
     Differentiator, PARK_WEIGHTS, central_difference, derive_motion, differentiate, exact_transfer,
     park_derivative, transfer,
 };
-use support::{largest_difference, observed_order};
 
 /// A dozen roundings of numbers of order one.
 const ROUNDING: f64 = 1e-13;

@@ -1,14 +1,12 @@
 //! The smoother against a slow oracle, its stated uncertainty against known noise.
 #![allow(clippy::unwrap_used)]
 
-mod support;
-
+use crate::support::{Normal, largest_difference};
 use faer::Mat;
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use simgap_integrate::inverse::{
     NoiseModel, SmoothedMotion, fit_noise_model, kalman_smoother, smoother_transfer,
 };
-use support::{Normal, largest_difference};
 
 const STEP_S: f64 = 0.02;
 const STD_M: f64 = 3e-4;

@@ -2,9 +2,9 @@
 //! sample by sample against what was written.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod motion;
+use crate::motion;
 
-use motion::{Expected, WHOLE, assert_holds, notes, options, path, read, refused};
+use crate::motion::{Expected, WHOLE, assert_holds, notes, options, path, read, refused};
 use simgap_record::{ReadOptions, read_file};
 
 const FOLDER: &str = "variants";

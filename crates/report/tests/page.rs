@@ -2,7 +2,7 @@
 //! every time.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use simgap_diagnose::{ChannelSeries, CheckSeries, Diagnosis, Status};
 use simgap_model::Location;

@@ -1,7 +1,7 @@
 //! The lines for a terminal.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use simgap_diagnose::Status;
 use simgap_report::summary::{Styles, summary_text};

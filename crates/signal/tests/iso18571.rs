@@ -1,9 +1,7 @@
 //! ISO/TS 18571 rating: closed forms, a slow oracle for the shift, another program's numbers.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Noise, cosine};
+use crate::common::{Noise, cosine};
 use proptest::prelude::*;
 use simgap_signal::SignalError;
 use simgap_signal::metrics::{Grade, iso18571};

@@ -1,9 +1,7 @@
 //! Lines at known frequencies, harmonics, images about half the Nyquist frequency.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Noise, max_diff};
+use crate::common::{Noise, max_diff};
 use proptest::prelude::*;
 use simgap_signal::SignalError;
 use simgap_signal::lines::fit_lines;

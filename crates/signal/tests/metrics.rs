@@ -1,9 +1,7 @@
 //! Agreement metrics against their closed forms.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Noise, cosine};
+use crate::common::{Noise, cosine};
 use proptest::prelude::*;
 use simgap_signal::metrics::{frac, nrmse, nrmse_over_channels, russell, sprague_geers};
 use simgap_signal::{Complex64, SignalError};

@@ -1,9 +1,7 @@
 //! White-noise level, autocorrelation, effective number of samples.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Noise, cosine, max_diff};
+use crate::common::{Noise, cosine, max_diff};
 use simgap_signal::SignalError;
 use simgap_signal::correlation::{autocorrelation, effective_sample_count};
 use simgap_signal::noise::{noise_std_by_differences, white_noise_std};

@@ -1,9 +1,7 @@
 //! Peak finding, interpolation between bins, and the standard errors it claims.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Noise, cosine};
+use crate::common::{Noise, cosine};
 use simgap_signal::peaks::{Peak, PeakOptions, find_peaks};
 use simgap_signal::spectrum::spectrum;
 use simgap_signal::{Trend, Window};

@@ -1,11 +1,9 @@
 //! Windows, amplitude spectrum and periodogram.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::{Noise, cosine, max_diff};
+use crate::common::{Noise, cosine, max_diff};
 use proptest::prelude::*;
 use simgap_signal::spectrum::{periodogram, spectrum};
 use simgap_signal::{Complex64, SignalError, Trend, Window};

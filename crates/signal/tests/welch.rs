@@ -1,9 +1,7 @@
 //! Averaged spectra and frequency responses.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Noise, max_diff};
+use crate::common::{Noise, max_diff};
 use simgap_signal::frf::frf;
 use simgap_signal::spectrum::periodogram;
 use simgap_signal::welch::{WelchOptions, cross_spectra, welch};

@@ -1,13 +1,13 @@
 //! Many simulations at once give what each gives alone, to the last bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
+use crate::support;
 
+use crate::support::{base_input, force_input, force_output, model, oscillator, output, sampled};
 use proptest::prelude::*;
 use simgap_effects::{Effect, Placed, SiteKind, SiteScale, catalogue, free_laws, sites};
 use simgap_model::{Load, Model, Pendulum};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
-use support::{base_input, force_input, force_output, model, oscillator, output, sampled};
 
 /// Two masses over a moving floor, every kind of output.
 fn plant() -> Model {

@@ -1,14 +1,12 @@
 //! Rigid bodies and beams in the simulation: every effect at a point, lanes, moving bases.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
+use crate::support::{
+    base_input, between, largest_difference, model, output, placed, predict, run, sampled,
+};
 use simgap_effects::{Effect, Family, Placed, SiteKind, SiteScale, catalogue};
 use simgap_model::{Location, Model, OutputKind};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
-use support::{
-    base_input, between, largest_difference, model, output, placed, predict, run, sampled,
-};
 
 const MASS: f64 = 40.0;
 const ARM: f64 = 0.7;

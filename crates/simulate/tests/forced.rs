@@ -1,12 +1,10 @@
 //! Forces of time alone on the march, against closed forms.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::f64::consts::TAU;
 
+use crate::support::{model, oscillator, output, placed, predict, run};
 use simgap_model::Location;
-use support::{model, oscillator, output, placed, predict, run};
 
 /// m ẍ + k x = A sin(ωt + φ) on its steady state x = A sin(ωt + φ) / (k − m ω²): the largest errors of displacement,
 /// velocity and acceleration over 200 samples, relative to their amplitudes.

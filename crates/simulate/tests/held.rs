@@ -1,9 +1,7 @@
 //! A force that keeps its values between samples, against the closed form.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
-use support::{model, oscillator, output, predict, run};
+use crate::support::{model, oscillator, output, predict, run};
 
 const MASS: f64 = 2.0;
 const STIFFNESS: f64 = 800.0;

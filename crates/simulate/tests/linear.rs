@@ -1,17 +1,15 @@
 //! Linear plants against closed forms: moving bases, force and acceleration outputs, loads.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::f64::consts::TAU;
 
-use proptest::prelude::*;
-use simgap_effects::Placed;
-use simgap_model::Location;
-use support::{
+use crate::support::{
     base_input, between, force_input, force_output, largest_difference, model, oscillator, output,
     placed, predict, run, sampled,
 };
+use proptest::prelude::*;
+use simgap_effects::Placed;
+use simgap_model::Location;
 
 /// A base that moves as B sin ωt: X/B = (k + icω) / (k − mω² + icω).
 struct Transmission {

@@ -1,17 +1,15 @@
 //! Nonlinear forces on the march, against closed forms.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::f64::consts::TAU;
 
-use simgap_effects::Placed;
-use simgap_model::Location;
-use simgap_simulate::{Run, Simulator, substeps_for};
-use support::{
+use crate::support::{
     between, elliptic_k, force_input, force_output, jacobi_cn, largest_difference, model,
     oscillator, output, placed, predict, rising_zeros, run, sampled,
 };
+use simgap_effects::Placed;
+use simgap_model::Location;
+use simgap_simulate::{Run, Simulator, substeps_for};
 
 fn arm() -> simgap_model::Model {
     model(

@@ -1,12 +1,10 @@
 //! Laws of the user's beside those of the catalogue: the same text gives the same motion.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod support;
-
+use crate::support::{between, force_input, model, oscillator, output, placed, run, sampled};
 use simgap_effects::{Placed, find_of};
 use simgap_model::{Law, LawParameter, Model};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
-use support::{between, force_input, model, oscillator, output, placed, run, sampled};
 
 const STEP_S: f64 = 2e-3;
 const SAMPLES: usize = 3000;

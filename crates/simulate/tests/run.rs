@@ -1,11 +1,11 @@
 //! From a record to a run: units, gains, missing columns, stretches.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
+use crate::support;
 
+use crate::support::{force_input, model, oscillator, output, predict};
 use simgap_record::{Channel, Record};
 use simgap_simulate::Run;
-use support::{force_input, model, oscillator, output, predict};
 
 fn wave(scale: f64) -> Vec<f64> {
     (0..40)

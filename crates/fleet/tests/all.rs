@@ -1,0 +1,7 @@
+//! The integration tests, one program: each file is one of its modules.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+mod plans;
+mod runs;
+mod told;

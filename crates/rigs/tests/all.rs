@@ -1,0 +1,4 @@
+//! The integration tests, one program: each file is one of its modules.
+
+mod cases;
+mod machine;
