@@ -2,8 +2,6 @@
 //! sample by sample against what was written.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::motion;
-
 use crate::motion::{Expected, WHOLE, assert_holds, notes, options, path, read, refused};
 use simgap_record::{ReadOptions, read_file};
 
@@ -86,7 +84,7 @@ fn val_parquet_times() {
         );
     }
     let half = Expected {
-        tolerance: motion::HALF,
+        tolerance: crate::motion::HALF,
         ..WHOLE
     };
     holds("half-decimal.parquet", &["u=u", "y=y"], half);
@@ -129,13 +127,16 @@ fn val_arrow_files() {
         }
         let all = read_file(&path(FOLDER, name), &ReadOptions::all()).unwrap();
         let count = &all.record.require("count").unwrap().values;
-        assert!((0..motion::ROWS).all(|k| count[k] == k as f64), "{name}");
+        assert!(
+            (0..crate::motion::ROWS).all(|k| count[k] == k as f64),
+            "{name}"
+        );
     }
     for name in ["pandas.feather", "polars.arrow"] {
         holds(name, &["u=u", "y=y"], WHOLE);
     }
     let half = Expected {
-        tolerance: motion::HALF,
+        tolerance: crate::motion::HALF,
         ..WHOLE
     };
     holds("duration-half.feather", &["u=u", "y=y"], half);
@@ -281,7 +282,7 @@ fn val_h5py_files() {
         "half.h5",
         &["u=u [kN]", "y=y [mm]"],
         Expected {
-            tolerance: motion::HALF,
+            tolerance: crate::motion::HALF,
             ..WHOLE
         },
     );
@@ -292,7 +293,7 @@ fn val_h5py_files() {
         assert!(told.contains(because), "{told}");
     }
     let single = Expected {
-        tolerance: motion::SINGLE,
+        tolerance: crate::motion::SINGLE,
         ..WHOLE
     };
     holds("records.h5", &["u=u [kN]", "y=y [mm]"], single);
@@ -326,7 +327,7 @@ fn val_asammdf_files() {
         "../plain.mf4",
         &map,
         Expected {
-            tolerance: motion::SINGLE,
+            tolerance: crate::motion::SINGLE,
             ..WHOLE
         },
     );
