@@ -4,29 +4,31 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use simgap_diagnose::Stage;
 
-/// The steps of a diagnosis and how much of its time has passed at their end: the mean of the demo,
-/// of its first record alone and of the tutorial. Steps that are left out are jumped; the shares of the
-/// three that are seldom (`from afar`, `in stretches`, `exact parameters`) are guessed.
-const STEPS: [(&str, f64); 11] = [
-    ("nominal model", 0.02),
-    ("single effects", 0.20),
-    ("single effects from afar", 0.24),
-    ("pairs of effects", 0.62),
-    ("sets of three", 0.70),
-    ("single effects in stretches", 0.72),
-    ("finalists", 0.80),
-    ("verdict", 0.94),
-    ("exact parameters", 0.95),
-    ("final fit", 0.96),
-    ("check records", 1.0),
+/// The stages of a diagnosis and how much of its time has passed at their end, where it goes through all of them: the mean of six, on three real
+/// and three generated machines. One that ends before is done sooner than is said.
+const STAGES: [(Stage, f64); 13] = [
+    (Stage::NominalModel, 0.01),
+    (Stage::NominalParameters, 0.015),
+    (Stage::Singles, 0.04),
+    (Stage::SinglesFromManyValues, 0.08),
+    (Stage::BesideParameters, 0.19),
+    (Stage::Pairs, 0.33),
+    (Stage::PairsFromManyValues, 0.39),
+    (Stage::Threes, 0.44),
+    (Stage::Stretches, 0.80),
+    (Stage::Changes, 0.95),
+    (Stage::Posterior, 0.98),
+    (Stage::FinalFit, 0.985),
+    (Stage::CheckRecords, 1.0),
 ];
 /// Before that, a guess of what is left would be none.
 const SURE_AFTER: Duration = Duration::from_secs(2);
 
 /// Where the work stands.
 #[derive(Clone, Copy)]
-struct Stage {
+struct Standing {
     started: Instant,
     /// Time that had passed when the step under way began.
     passed: Duration,
@@ -38,53 +40,53 @@ struct Stage {
 /// Shows the step that is under way, on stderr and only on a terminal.
 pub(crate) struct Steps {
     bar: ProgressBar,
-    stage: Arc<Mutex<Stage>>,
+    standing: Arc<Mutex<Standing>>,
 }
 
 impl Steps {
     pub(crate) fn new() -> Steps {
-        let stage = Arc::new(Mutex::new(Stage {
+        let standing = Arc::new(Mutex::new(Standing {
             started: Instant::now(),
             passed: Duration::ZERO,
             from: 0.0,
-            to: STEPS[0].1,
+            to: STAGES[0].1,
         }));
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-        let shown = Arc::clone(&stage);
+        let shown = Arc::clone(&standing);
         let left = move |_: &ProgressState, out: &mut dyn std::fmt::Write| {
-            let Ok(stage) = shown.lock().map(|stage| *stage) else {
+            let Ok(standing) = shown.lock().map(|standing| *standing) else {
                 return;
             };
-            if let Some(left) = left(stage, stage.started.elapsed()) {
-                let _ = write!(out, ", about {} s left", left.as_secs().max(1));
+            if let Some(left) = left(standing, standing.started.elapsed()) {
+                let _ = write!(out, ", up to {} s left", left.as_secs().max(1));
             }
         };
         if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}{left}") {
             bar.set_style(style.with_key("left", left));
         }
         bar.enable_steady_tick(Duration::from_millis(120));
-        Steps { bar, stage }
+        Steps { bar, standing }
     }
 
     pub(crate) fn show(&self, step: &str) {
-        if let Ok(mut stage) = self.stage.lock() {
-            *stage = stage.next(step, stage.started.elapsed());
+        if let Ok(mut standing) = self.standing.lock() {
+            *standing = standing.next(step, standing.started.elapsed());
         }
         self.bar.set_message(step.to_string());
     }
 }
 
-impl Stage {
-    /// The stage a step begins; a step that is not known goes on with the one before.
-    fn next(self, step: &str, passed: Duration) -> Stage {
-        let Some(index) = STEPS.iter().position(|(name, _)| *name == step) else {
+impl Standing {
+    /// Where it stands when a step begins; a step that is not known goes on with the one before.
+    fn next(self, step: &str, passed: Duration) -> Standing {
+        let Some(index) = STAGES.iter().position(|(stage, _)| stage.name() == step) else {
             return self;
         };
-        let from = index.checked_sub(1).map_or(0.0, |before| STEPS[before].1);
-        Stage {
+        let from = index.checked_sub(1).map_or(0.0, |before| STAGES[before].1);
+        Standing {
             passed,
             from,
-            to: STEPS[index].1,
+            to: STAGES[index].1,
             ..self
         }
     }
@@ -92,12 +94,12 @@ impl Stage {
 
 /// Time that is left: what has passed tells how long all of it takes. Counts down while a step
 /// lasts; a step that takes longer than its share tells that what comes after it will, too.
-fn left(stage: Stage, now: Duration) -> Option<Duration> {
-    if stage.from <= 0.0 || now < SURE_AFTER {
+fn left(standing: Standing, now: Duration) -> Option<Duration> {
+    if standing.from <= 0.0 || now < SURE_AFTER {
         return None;
     }
     let now = now.as_secs_f64();
-    let all = (stage.passed.as_secs_f64() / stage.from).max(now / stage.to);
+    let all = (standing.passed.as_secs_f64() / standing.from).max(now / standing.to);
     Some(Duration::from_secs_f64((all - now).max(0.0)))
 }
 
@@ -113,7 +115,7 @@ mod tests {
 
     #[test]
     fn verify_the_time_left_counts_down_and_grows_with_a_long_step() {
-        let first = Stage {
+        let first = Standing {
             started: Instant::now(),
             passed: Duration::ZERO,
             from: 0.0,
@@ -121,28 +123,31 @@ mod tests {
         };
         assert_eq!(left(first, Duration::from_secs(9)), None);
         // Half of the work has taken ten seconds, and the step goes to three quarters.
-        let stage = Stage {
+        let standing = Standing {
             passed: Duration::from_secs(10),
             from: 0.5,
             to: 0.75,
             ..first
         };
         let at = |s: u64| {
-            left(stage, Duration::from_secs(s))
+            left(standing, Duration::from_secs(s))
                 .unwrap_or_default()
                 .as_secs()
         };
         assert_eq!([at(10), at(13), at(15), at(30)], [10, 7, 5, 10]);
         // An unknown step goes on with the one before, a known one has its own share.
-        let next = stage.next("something else", Duration::from_secs(11));
+        let next = standing.next("something else", Duration::from_secs(11));
         assert_eq!((next.from, next.passed), (0.5, Duration::from_secs(10)));
-        let next = stage.next("verdict", Duration::from_secs(20));
-        assert_eq!((next.from, next.to), (0.80, 0.94));
+        let next = standing.next(Stage::Threes.name(), Duration::from_secs(20));
+        let share = |stage| STAGES.iter().find(|(of, _)| *of == stage).map(|of| of.1);
+        assert_eq!(share(Stage::PairsFromManyValues), Some(next.from));
+        assert_eq!(share(Stage::Threes), Some(next.to));
     }
 
     #[test]
     fn verify_shares_rise_to_the_whole() {
-        assert!(STEPS.windows(2).all(|pair| pair[0].1 < pair[1].1));
-        assert_eq!(STEPS[STEPS.len() - 1].1, 1.0);
+        assert!(STAGES.windows(2).all(|pair| pair[0].1 < pair[1].1));
+        assert_eq!(STAGES.map(|(stage, _)| stage), Stage::ALL);
+        assert_eq!(STAGES[STAGES.len() - 1].1, 1.0);
     }
 }

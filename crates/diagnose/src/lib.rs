@@ -88,3 +88,4 @@ pub use outcome::NominalEstimate;
 pub use pipeline::{Outcome, Progress, Request, diagnose};
 pub use sets::{FittedEffect, FittedSet};
 pub use simgap_estimate::Cancel;
+pub use simgap_inference::Stage;

@@ -13,7 +13,7 @@ use simgap_effects::{Placed, catalogue_of};
 use simgap_estimate::{Cancel, Fit, FitOptions, Problem, Start, fit, fit_initial_states};
 use simgap_inference::noise_model::whitening;
 use simgap_inference::{
-    Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, read_inputs, recalibrate,
+    Budget, ModelSpace, NoiseModel, RECALIBRATION_STD, Search, Stage, read_inputs, recalibrate,
 };
 use simgap_model::{BetweenSamples, Model};
 use simgap_record::{Defect, QualityFinding, Record};
@@ -99,7 +99,7 @@ pub fn diagnose<R: Borrow<Record>>(
 ) -> Result<Outcome, DiagnoseError> {
     known_kinds(request)?;
     let mut data = divide(request.model, request.train, request.check)?;
-    progress("nominal model");
+    progress(Stage::NominalModel.name());
     let model = read_inputs(request.model, &data.train, &request.cancel)?;
     data.notes.extend(read_otherwise(request.model, &model));
     let request = &Request {
@@ -140,11 +140,11 @@ pub fn diagnose<R: Borrow<Record>>(
     // Sets that failed are left out of the pool, those of cancelled work too.
     request.cancel.check()?;
 
-    progress("posterior");
+    progress(Stage::Posterior.name());
     let decision = decide(&search, pool, &start, &prepared)?;
 
     request.cancel.check()?;
-    progress("final fit");
+    progress(Stage::FinalFit.name());
     // Intervals count the samples that what the answer leaves holds.
     let noise = match decision.posterior.best() {
         Some(best) => noise.with_colour_of(&best.fit),
@@ -246,7 +246,7 @@ fn finish<R: Borrow<Record>>(
     progress: Progress<'_>,
     stopped_early: bool,
 ) -> Result<Outcome, DiagnoseError> {
-    progress("check records");
+    progress(Stage::CheckRecords.name());
     let placed: Vec<Placed> = estimate.estimate.placed().cloned().collect();
     let check = Check::new(&prepared.train, &prepared.recalibrated, data.check.clone())?;
     let checked = check.of((&estimate, options), &placed)?;

@@ -29,6 +29,7 @@ mod other;
 mod proposals;
 mod search;
 mod shapley;
+mod stage;
 mod stretches;
 
 pub use between_samples::read_inputs;
@@ -41,4 +42,5 @@ pub use noise_model::NoiseModel;
 pub use other::{FreeLaw, Other, other};
 pub use proposals::RECALIBRATION_STD;
 pub use search::{Budget, Search};
+pub use stage::Stage;
 pub use stretches::{bounds, recalibrate};

@@ -27,6 +27,7 @@ use crate::extended::Extended;
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
 use crate::noise_model::NoiseModel;
+use crate::stage::Stage;
 
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
@@ -131,6 +132,10 @@ impl<'a> Search<'a> {
         }
     }
 
+    fn tell(&self, stage: Stage) {
+        (self.budget.progress)(stage.name());
+    }
+
     /// Whether the search ends here. Asked between stages and between parts of them that follow each other.
     pub(crate) fn is_spent(&self) -> bool {
         (self.budget.is_spent)()
@@ -206,15 +211,14 @@ impl<'a> Search<'a> {
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
     pub fn run(&mut self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
-        let step = self.budget.progress;
         let mut pool = vec![base.clone()];
         if self.is_settled(&pool)? {
             return Ok(pool);
         }
-        step("nominal parameters");
+        self.tell(Stage::NominalParameters);
         let recalibrated = self.recalibrated(base);
         pool.extend(self.with_parameters_named(recalibrated.clone().into_iter().collect()));
-        step("single effects");
+        self.tell(Stage::Singles);
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
         rank(&mut pool);
@@ -237,9 +241,8 @@ impl<'a> Search<'a> {
         mut pool: Vec<CandidateModel>,
         is_settled: bool,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        let step = self.budget.progress;
         if !is_settled {
-            step("single effects from many values");
+            self.tell(Stage::SinglesFromManyValues);
             pool.extend(self.multistart(base, linear)?);
             pool.extend(self.fit_from_given(base, FITTED[0])?);
         }
@@ -254,7 +257,7 @@ impl<'a> Search<'a> {
         if let Some(recalibrated) = recalibrated
             && !self.is_settled(&pool)?
         {
-            step("effects beside re-estimated parameters");
+            self.tell(Stage::BesideParameters);
             pool.extend(self.beside_recalibrated(&recalibrated)?);
             rank(&mut pool);
         }
@@ -264,7 +267,7 @@ impl<'a> Search<'a> {
             if self.is_settled(&pool)? {
                 return Ok(pool);
             }
-            step(["pairs of effects", "sets of three"][size]);
+            self.tell([Stage::Pairs, Stage::Threes][size]);
             let best = survivors_of(&front, *survivors);
             let mut next: Vec<CandidateModel> = Vec::new();
             for survivor in &best {
@@ -275,7 +278,7 @@ impl<'a> Search<'a> {
                 next.extend(self.fit_joint(base, linear));
                 rank(&mut next);
                 if !self.is_settled(&next)? {
-                    step("pairs from many values");
+                    self.tell(Stage::PairsFromManyValues);
                     next.extend(self.extend_from_many_values(&best)?);
                 }
             }
@@ -286,7 +289,7 @@ impl<'a> Search<'a> {
             front.retain(|set| !self.is_full(set));
         }
         if !self.is_settled(&pool)? {
-            step("single effects in stretches");
+            self.tell(Stage::Stretches);
             // Where stretches cannot be simulated, nothing is found in them.
             let known = pool
                 .first()
@@ -316,7 +319,7 @@ impl<'a> Search<'a> {
             if self.is_spent() {
                 return Ok(());
             }
-            (self.budget.progress)("changes to the best set");
+            self.tell(Stage::Changes);
             let mut seen = BTreeSet::new();
             let leading = pool.iter().filter(|set| seen.insert(set.key()));
             let leading: Vec<CandidateModel> = leading.take(LEADING).cloned().collect();
