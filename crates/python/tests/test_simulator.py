@@ -2,6 +2,7 @@
 
 import _thread
 import math
+import signal
 
 import numpy as np
 import pandas
@@ -241,6 +242,8 @@ def test_what_a_simulator_needs_is_told(runs):
 
 def test_an_interrupt_ends_the_work(runs):
     calls = []
+    # A shell starts what runs in the background with interrupts ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def function(parameters, inputs, forces):
         calls.append(parameters)
