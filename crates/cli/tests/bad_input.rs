@@ -7,13 +7,11 @@
     clippy::print_stderr
 )]
 
-use crate::common;
-
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::Stdio;
 
-use crate::common::{Bench, MODEL, record};
+use crate::common::{self, Bench, MODEL, record};
 
 /// A diagnosis of `A.csv` by `model.toml` into `out`.
 const DIAGNOSE: [&str; 6] = ["diagnose", "model.toml", "--train", "A.csv", "--out", "out"];

@@ -1,12 +1,10 @@
 //! The commands that explain: the catalogue, records, completions and manual.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::common;
-
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use crate::common::{Bench, record};
+use crate::common::{self, Bench, record};
 use serde_json::Value;
 
 /// Names of the commands, as the help lists them.

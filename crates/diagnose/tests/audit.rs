@@ -1,9 +1,7 @@
 //! What the audit of records against a model says, and when it is silent.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::common;
-
-use crate::common::{plant, record};
+use crate::common::{self, plant, record};
 use simgap_diagnose::audit::audit;
 use simgap_model::Model;
 use simgap_record::{AuditFinding, AuditTopic, Channel, Record};

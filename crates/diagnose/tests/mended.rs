@@ -1,11 +1,9 @@
 //! Samples that were missing and filled are no defect of the measurement chain.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::common;
-
 use std::fmt::Write as _;
 
-use crate::common::{named, placed, plant, record};
+use crate::common::{self, named, placed, plant, record};
 use simgap_diagnose::{Request, diagnose};
 use simgap_record::{Mend, ReadOptions, Record, parse_file};
 

@@ -1,9 +1,7 @@
 //! What users of grey-box tools have been misled by, each on records made for it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::common;
-
-use crate::common::{diagnosed, diagnosed_as, diagnosed_with_noise, ground, named, placed};
+use crate::common::{self, diagnosed, diagnosed_as, diagnosed_with_noise, ground, named, placed};
 use simgap_diagnose::Status;
 use simgap_model::{Location, Model};
 

@@ -2,11 +2,9 @@
 //! the moment it is listed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::common;
-
 use std::collections::BTreeSet;
 
-use crate::common::{force, hydraulic, model, model_at, scale, simulator};
+use crate::common::{self, force, hydraulic, model, model_at, scale, simulator};
 use simgap_effects::{
     Action, Effect, Family, Parameter, Placed, Sampled, SiteKind, SiteScale, catalogue, sites,
 };

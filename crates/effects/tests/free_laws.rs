@@ -1,11 +1,9 @@
 //! The free laws: tables that a corrected model may hold.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::common;
-
 use std::collections::BTreeSet;
 
-use crate::common::{force, model, scale, through};
+use crate::common::{self, force, model, scale, through};
 use simgap_effects::{
     Action, Effect, Placed, SignalMap, SiteKind, VELOCITY_NODES, find_law, free_laws, sites,
 };

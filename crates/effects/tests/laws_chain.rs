@@ -1,11 +1,9 @@
 //! What the measurement chain does to a channel, each kind against its closed form.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::common;
-
 use std::f64::consts::PI;
 
-use crate::common::{effect, map, through};
+use crate::common::{self, effect, map, through};
 use simgap_effects::{Sampled, SiteScale};
 
 /// A few roundings of double precision.

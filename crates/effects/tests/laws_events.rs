@@ -1,11 +1,9 @@
 //! Lost samples and spikes are found in the record alone, and none where there are none.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::common;
-
 use std::f64::consts::PI;
 
-use crate::common::{effect, map, through};
+use crate::common::{self, effect, map, through};
 use simgap_effects::Sampled;
 
 /// Numbers evenly drawn in 0 to 1 (a linear congruence, high bits).

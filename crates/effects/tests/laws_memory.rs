@@ -1,9 +1,7 @@
 //! Laws that remember, each against its closed form.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::common;
-
-use crate::common::{effect, law};
+use crate::common::{self, effect, law};
 use proptest::prelude::*;
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
 

@@ -1,9 +1,7 @@
 //! Where effects can sit, and what is said when one cannot.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::common;
-
-use crate::common::{MODEL, model};
+use crate::common::{self, MODEL, model};
 use simgap_effects::{EffectError, Placed, SiteKind, catalogue, places_of, sites};
 use simgap_model::{EffectEntry, Location, Model};
 

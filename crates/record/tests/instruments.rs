@@ -2,9 +2,9 @@
 //! flag, or with the one that the refusal names.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::motion;
-
-use crate::motion::{Expected, SINGLE, WHOLE, assert_holds, notes, options, path, read, refused};
+use crate::motion::{
+    self, Expected, SINGLE, WHOLE, assert_holds, notes, options, path, read, refused,
+};
 use simgap_record::{ChannelMap, ReadOptions, read_file};
 
 const FOLDER: &str = "instruments";

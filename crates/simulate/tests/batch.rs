@@ -1,9 +1,9 @@
 //! Many simulations at once give what each gives alone, to the last bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::support;
-
-use crate::support::{base_input, force_input, force_output, model, oscillator, output, sampled};
+use crate::support::{
+    self, base_input, force_input, force_output, model, oscillator, output, sampled,
+};
 use proptest::prelude::*;
 use simgap_effects::{Effect, Placed, SiteKind, SiteScale, catalogue, free_laws, sites};
 use simgap_model::{Load, Model, Pendulum};

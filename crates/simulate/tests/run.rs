@@ -1,9 +1,7 @@
 //! From a record to a run: units, gains, missing columns, stretches.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::support;
-
-use crate::support::{force_input, model, oscillator, output, predict};
+use crate::support::{self, force_input, model, oscillator, output, predict};
 use simgap_record::{Channel, Record};
 use simgap_simulate::Run;
 

@@ -1,11 +1,9 @@
 //! A servo axis: cylinder, valve and controller against SciPy, closed forms and balances.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::support;
-
 use std::f64::consts::TAU;
 
-use crate::support::{between, largest_difference, placed, predict, run, sampled};
+use crate::support::{self, between, largest_difference, placed, predict, run, sampled};
 use simgap_model::{Model, Parameter, damped_modes_of};
 use simgap_simulate::{Job, Run, Simulator, predict_all};
 

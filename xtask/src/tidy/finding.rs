@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::Source;
+
 /// Something that breaks a rule, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
@@ -11,6 +13,17 @@ pub struct Finding {
     pub line: usize,
     /// What was found and what is needed.
     pub message: String,
+}
+
+impl Finding {
+    /// A finding in a Rust file.
+    pub(super) fn in_source(source: &Source, line: usize, message: String) -> Finding {
+        Finding {
+            file: source.path.clone(),
+            line,
+            message,
+        }
+    }
 }
 
 impl fmt::Display for Finding {

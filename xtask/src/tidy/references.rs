@@ -119,11 +119,7 @@ pub fn every_reference_resolves(workspace: &Workspace) -> Vec<Finding> {
                 }
                 Some(_) => continue,
             };
-            findings.push(Finding {
-                file: source.path.clone(),
-                line,
-                message,
-            });
+            findings.push(Finding::in_source(source, line, message));
         }
     }
     findings

@@ -42,14 +42,6 @@ const MOST_LINES: usize = 450;
 /// Files that are longer for now, with the length they must not exceed.
 const LONGER: [(&str, usize); 0] = [];
 
-fn finding(source: &Source, line: usize, message: String) -> Finding {
-    Finding {
-        file: source.path.clone(),
-        line,
-        message,
-    }
-}
-
 /// Whether a line of code names something: a word, or a path or macro that ends in no word.
 fn names(code: &str, token: &str) -> bool {
     if token.ends_with(|c: char| c.is_alphanumeric()) {
@@ -83,7 +75,11 @@ pub fn libraries_are_silent_and_still(workspace: &Workspace) -> Vec<Finding> {
     for source in libraries {
         for (token, reason) in LOUD {
             for line in uses(source, token) {
-                findings.push(finding(source, line, format!("{token}: {reason}")));
+                findings.push(Finding::in_source(
+                    source,
+                    line,
+                    format!("{token}: {reason}"),
+                ));
             }
         }
     }
@@ -103,7 +99,7 @@ pub fn who_may_touch_files(workspace: &Workspace) -> Vec<Finding> {
             for line in uses(source, token) {
                 let who = TOUCH_FILES.join(", ");
                 let message = format!("{token}: only {who} touch files");
-                findings.push(finding(source, line, message));
+                findings.push(Finding::in_source(source, line, message));
             }
         }
     }
@@ -122,7 +118,7 @@ pub fn integrators_know_no_effect(workspace: &Workspace) -> Vec<Finding> {
             for kind in &workspace.kinds {
                 if has_word(line, kind) {
                     let message = format!("{kind}: integrate knows no effect by name");
-                    findings.push(finding(source, index + 1, message));
+                    findings.push(Finding::in_source(source, index + 1, message));
                 }
             }
         }
@@ -149,7 +145,7 @@ pub fn published_numbers_are_only_embedded(workspace: &Workspace) -> Vec<Finding
             let forms = code.replace(&prose, "").contains(path) || code.contains(folder);
             if forms && !embeds {
                 let message = format!("{path} may only be embedded, by tables");
-                findings.push(finding(source, line, message));
+                findings.push(Finding::in_source(source, line, message));
             }
         }
     }
@@ -165,7 +161,11 @@ pub fn nothing_is_unsafe(workspace: &Workspace) -> Vec<Finding> {
     for source in &workspace.sources {
         for (line, code) in code_lines(&source.text) {
             if has_word(code, &word) && !code.contains('"') {
-                findings.push(finding(source, line, format!("{word} code is forbidden")));
+                findings.push(Finding::in_source(
+                    source,
+                    line,
+                    format!("{word} code is forbidden"),
+                ));
             }
         }
     }
@@ -185,7 +185,7 @@ pub fn files_are_short(workspace: &Workspace) -> Vec<Finding> {
         let found = source.text.lines().count();
         if found > most {
             let message = format!("{found} lines, needed is {most} at most: one idea a file");
-            findings.push(finding(source, most + 1, message));
+            findings.push(Finding::in_source(source, most + 1, message));
         }
     }
     findings

@@ -1,6 +1,6 @@
 //! No test is left out: where the tests of a package are one program, a file that it does not name would never be run.
 
-use super::{Finding, Package, Source, Workspace};
+use super::{Finding, Source, Workspace};
 
 /// Files directly in `tests` are programs of tests, or modules of the one that holds them all.
 #[must_use]
@@ -24,7 +24,11 @@ pub fn every_test_file_is_run(workspace: &Workspace) -> Vec<Finding> {
             let is_module =
                 all.is_some_and(|all| all.text.lines().any(|line| line == format!("mod {name};")));
             if !is_module && !is_declared(&format!("name = \"{name}\"")) {
-                findings.push(left_out(source, name, package));
+                let message = format!(
+                    "no program of tests of {} holds it, needed is `mod {name};` in tests/all.rs",
+                    package.name
+                );
+                findings.push(Finding::in_source(source, 1, message));
             }
         }
     }
@@ -37,20 +41,10 @@ fn test_file<'a>(source: &'a Source, folder: &str) -> Option<&'a str> {
     (!name.contains('/')).then_some(name)
 }
 
-fn left_out(source: &Source, name: &str, package: &Package) -> Finding {
-    Finding {
-        file: source.path.clone(),
-        line: 1,
-        message: format!(
-            "no program of tests of {} holds it, needed is `mod {name};` in tests/all.rs",
-            package.name
-        ),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tidy::Package;
 
     #[test]
     fn verify_a_test_file_that_nothing_runs_is_found() {

@@ -49,24 +49,12 @@ pub trait LaneObserver {
 }
 
 /// An observer of any type: the march is the longest code there is to compile, and is compiled once for all of them.
-trait Watch {
-    fn needs_acceleration(&self) -> bool;
-
-    fn reads_displacement(&self, coordinate: usize) -> bool;
-
-    fn observe(&mut self, arch: Arch, at: &LaneSnapshot<'_>);
+trait Watch: LaneObserver {
+    fn watch(&mut self, arch: Arch, at: &LaneSnapshot<'_>);
 }
 
 impl<O: LaneObserver> Watch for O {
-    fn needs_acceleration(&self) -> bool {
-        LaneObserver::needs_acceleration(self)
-    }
-
-    fn reads_displacement(&self, coordinate: usize) -> bool {
-        LaneObserver::reads_displacement(self, coordinate)
-    }
-
-    fn observe(&mut self, arch: Arch, at: &LaneSnapshot<'_>) {
+    fn watch(&mut self, arch: Arch, at: &LaneSnapshot<'_>) {
         arch.dispatch(Observe(self, at));
     }
 }
@@ -329,6 +317,6 @@ impl<R: Row> Seen<R> {
             base_displacement,
             base_velocity,
         };
-        observer.observe(lanes.block.arch, &at);
+        observer.watch(lanes.block.arch, &at);
     }
 }
