@@ -109,13 +109,7 @@ pub(crate) fn of_effect(
                 .then(a.probability.total_cmp(&b.probability))
         });
     let spare = || named.iter().zip(hits).filter(|(_, hit)| hit.is_none());
-    let rival = || {
-        named.iter().any(|n| {
-            n.indistinguishable
-                .iter()
-                .any(|(kind, at)| *kind == effect.kind && same_place(at, &effect.at))
-        })
-    };
+    let rival = || named.iter().any(|n| n.declares(effect));
     let outcome = match (mine, status) {
         (Some(named), _) if of_mine(&named) => Outcome::Right,
         (Some(_), _) => Outcome::Equivalent,

@@ -60,13 +60,13 @@ pub use generate::generate;
 pub use level::Level;
 pub use outcome::{Outcome, Verdict};
 pub use recipe::{Recipe, drawn_kinds, schedule};
-pub use score::{First, Role, Score, score};
+pub use score::{First, LARGEST_SET, Role, Score, score};
 pub use seal::{SealedCase, open, seal, sha256};
 pub use table::{
     Requirement, render_calibration, render_confusion, render_figures, render_requirements,
     requirements,
 };
-pub use totals::{Bin, CLOSE, LARGEST_SET, Share, Spread, Totals};
+pub use totals::{Bin, CLOSE, Share, Spread, Totals};
 
 /// Seeds for setting thresholds of the diagnosis. Never used to report.
 pub const TUNE_SEEDS: std::ops::Range<u64> = 1..1000;

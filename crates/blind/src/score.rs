@@ -8,6 +8,9 @@ use crate::judge::{hit, of_clean, of_effect, of_foreign};
 use crate::outcome::{Outcome, Verdict};
 use crate::{Level, Status, Truth};
 
+/// Largest set of kinds that an answer may leave undecided.
+pub const LARGEST_SET: usize = 3;
+
 /// What a case asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
@@ -67,7 +70,8 @@ pub struct Score {
     pub verdicts: Vec<Verdict>,
     /// What is named first, for [`Role::Single`] and an answer that names something.
     pub first: Option<First>,
-    /// Probability stated for each named effect, and whether it was right.
+    /// Probability stated for each named effect, and whether it holds: that it, or one of a few kinds that are
+    /// said to be indistinguishable from it ([`LARGEST_SET`]), is part of the cause.
     pub stated: Vec<(f64, bool)>,
     /// Named effects that are neither in the truth nor excused by small parameter errors.
     pub extra: Vec<String>,
@@ -151,7 +155,10 @@ pub fn score(name: &str, truth: &Truth, answer: &Answer, best: Option<&Signals>)
             _ => None,
         },
         stated: counted()
-            .map(|(named, hit)| (named.probability, hit.is_some()))
+            .map(|(named, hit)| {
+                let holds = hit.is_some() || is_of_small_class(truth, named);
+                (named.probability, holds)
+            })
             .collect(),
         extra: counted()
             .filter(|(_, hit)| hit.is_none())
@@ -168,18 +175,18 @@ fn is_excused(truth: &Truth, named: &Named) -> bool {
     small.any(|e| e.kind == named.kind && same_place(&e.at, &named.at))
 }
 
+/// Whether an effect of the truth is among the few that are said to be indistinguishable from a named one.
+fn is_of_small_class(truth: &Truth, named: &Named) -> bool {
+    let is_known = truth.status != Status::Unknown;
+    is_known
+        && named.kinds().len() <= LARGEST_SET
+        && truth.effects.iter().any(|e| named.declares(e))
+}
+
 fn first_named(truth: &Truth, first: &Named, hit: Option<usize>) -> First {
     let kind = truth.effects.first().map_or("", |effect| &effect.kind);
-    let mut kinds: Vec<&str> = vec![&first.kind];
-    kinds.extend(
-        first
-            .indistinguishable
-            .iter()
-            .map(|(kind, _)| kind.as_str()),
-    );
+    let kinds = first.kinds();
     let is_declared = kinds.contains(&kind);
-    kinds.sort_unstable();
-    kinds.dedup();
     First {
         is_kind: first.kind == kind,
         is_same: first.kind == kind || hit.is_some(),

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::totals::{CLOSE, LARGEST_SET, Share, Spread, Totals};
+use crate::score::LARGEST_SET;
+use crate::totals::{CLOSE, Share, Spread, Totals};
 
 /// What is required of a campaign and what it measures.
 ///

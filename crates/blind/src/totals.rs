@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::score::LARGEST_SET;
 use crate::{Outcome, Role, Score};
 
 /// Edges of the bins of stated probabilities.
 const BINS: [f64; 7] = [0.0, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0];
-/// Largest set of kinds that an answer may leave undecided.
-pub const LARGEST_SET: usize = 3;
 /// A stated closing this near to the true one is right.
 pub const CLOSE: f64 = 0.05;
 
