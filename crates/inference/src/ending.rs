@@ -3,11 +3,11 @@
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, fit};
 
-use crate::candidate_model::{CandidateModel, is_nominal, least};
+use crate::candidate_model::{CandidateModel, is_nominal, least, rank};
 use crate::gap::{Gap, RELEVANT_SHARE};
 use crate::motion;
 use crate::noise_model::{NOISE_KNOWN, noise_variance, rounding_variance, stepped};
-use crate::search::Search;
+use crate::search::{ADDED, Search};
 
 impl Search<'_> {
     /// Whether the best set is at its end, or holds as many effects as any and leaves no share that counts.
@@ -19,6 +19,35 @@ impl Search<'_> {
             return Ok(true);
         }
         self.is_at_its_end(best)
+    }
+
+    /// As [`Search::is_settled`], once effects were tried from many values: the best set may then hold fewer effects than any where it
+    /// leaves no share that counts, for no effect beside it could be worth a name, and nothing promises to make it likelier.
+    ///
+    /// A best set that leaves nothing but noise is not at its end where something promises to be worth a name beside it. That is added
+    /// here before anything else is tried, as long as the set grows likelier by it.
+    pub(crate) fn settle(&self, pool: &mut Vec<CandidateModel>) -> Result<bool, EstimateError> {
+        loop {
+            if self.is_settled(pool)? {
+                return Ok(true);
+            }
+            let Some(best) = pool.first().cloned() else {
+                return Ok(false);
+            };
+            if !self.leaves_noise(&best, &self.noise_of(&best)) {
+                return Ok(self.leaves_no_share(&best, pool) && !self.is_promising(&best)?);
+            }
+            let larger = match self.is_full(&best) {
+                true => vec![],
+                false => self.extend(&best, ADDED)?,
+            };
+            pool.extend(larger);
+            rank(pool);
+            let stays = pool.first().is_none_or(|first| first.key() == best.key());
+            if stays {
+                return Ok(true);
+            }
+        }
     }
 
     /// Whether a set leaves no share that counts of what wrong nominal parameters leave alone, so far as these were fitted.

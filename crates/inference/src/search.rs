@@ -38,10 +38,12 @@ const REFITTED: usize = 16;
 /// Sets that are extended in the end: the best one may be a stand-in for a larger set that holds the next.
 const LEADING: usize = 3;
 /// Candidates fitted beside each of them; in the place of one of its effects as many as beside a single one.
-const ADDED: usize = 4;
+pub(crate) const ADDED: usize = 4;
 /// Effects of a set at the most; wrong nominal parameters besides.
 const MOST_EFFECTS: usize = 3;
 const MOST_PARAMETERS: usize = 3;
+/// Proposals that are tried side by side before the search is asked whether it ends.
+const SIDE_BY_SIDE: usize = 8;
 /// Rounds of changes to the best set.
 const ROUNDS: usize = 4;
 
@@ -136,9 +138,26 @@ impl<'a> Search<'a> {
         (self.budget.progress)(stage.name());
     }
 
-    /// Whether the search ends here. Asked between stages and between parts of them that follow each other.
+    /// Whether the search ends here. Asked between stages and between parts of them that follow each other, never by one of several
+    /// that run side by side: what these have done by then would depend on the threads.
     pub(crate) fn is_spent(&self) -> bool {
         (self.budget.is_spent)()
+    }
+
+    /// What comes of some proposals, a few side by side at a time until the search ends: what promises most comes first.
+    pub(crate) fn try_each<T: Sync, R: Send>(
+        &self,
+        proposals: &[T],
+        outcome: impl Fn(&T) -> R + Sync,
+    ) -> Vec<R> {
+        let mut outcomes = Vec::with_capacity(proposals.len());
+        for few in proposals.chunks(SIDE_BY_SIDE) {
+            if self.is_spent() {
+                break;
+            }
+            outcomes.par_extend(few.par_iter().map(&outcome));
+        }
+        outcomes
     }
 
     /// Fits a set from a start.
@@ -254,17 +273,19 @@ impl<'a> Search<'a> {
             pool.extend(grown);
             rank(&mut pool);
         }
+        let mut is_settled = self.settle(&mut pool)?;
         if let Some(recalibrated) = recalibrated
-            && !self.is_settled(&pool)?
+            && !is_settled
         {
             self.tell(Stage::BesideParameters);
             pool.extend(self.beside_recalibrated(&recalibrated)?);
             rank(&mut pool);
+            is_settled = self.settle(&mut pool)?;
         }
         let mut front: Vec<CandidateModel> = pool.clone();
         front.retain(|set| !set.effects().is_empty() && !self.is_full(set));
         for (size, survivors) in SURVIVORS.iter().enumerate() {
-            if self.is_settled(&pool)? {
+            if is_settled {
                 return Ok(pool);
             }
             self.tell([Stage::Pairs, Stage::Threes][size]);
@@ -276,19 +297,23 @@ impl<'a> Search<'a> {
             if size == 0 {
                 next.extend(self.unite(&pool)?);
                 next.extend(self.fit_joint(base, linear));
-                rank(&mut next);
-                if !self.is_settled(&next)? {
-                    self.tell(Stage::PairsFromManyValues);
-                    next.extend(self.extend_from_many_values(&best)?);
-                }
             }
-            rank(&mut next);
             pool.extend(next.iter().cloned());
             rank(&mut pool);
+            is_settled = self.settle(&mut pool)?;
+            if size == 0 && !is_settled {
+                self.tell(Stage::PairsFromManyValues);
+                let far = self.extend_from_many_values(&best)?;
+                next.extend(far.iter().cloned());
+                pool.extend(far);
+                rank(&mut pool);
+                is_settled = self.settle(&mut pool)?;
+            }
+            rank(&mut next);
             front = next;
             front.retain(|set| !self.is_full(set));
         }
-        if !self.is_settled(&pool)? {
+        if !is_settled {
             self.tell(Stage::Stretches);
             // Where stretches cannot be simulated, nothing is found in them.
             let known = pool
@@ -313,35 +338,33 @@ impl<'a> Search<'a> {
     pub fn refine(&self, pool: &mut Vec<CandidateModel>) -> Result<(), EstimateError> {
         let rescaled = Extended::default();
         for _ in 0..ROUNDS {
-            let Some(best) = pool.first().cloned() else {
-                return Ok(());
-            };
             if self.is_spent() {
                 return Ok(());
             }
             self.tell(Stage::Changes);
+            let is_settled = self.settle(pool)?;
+            let Some(best) = pool.first().cloned() else {
+                return Ok(());
+            };
             let mut seen = BTreeSet::new();
             let leading = pool.iter().filter(|set| seen.insert(set.key()));
             let leading: Vec<CandidateModel> = leading.take(LEADING).cloned().collect();
-            if !self.is_at_its_end(&best)? {
+            if !is_settled {
                 for set in leading.iter().filter(|set| !self.is_full(set)) {
                     pool.extend(self.extend(set, ADDED)?);
                 }
             }
-            let changed = (0..best.effects().len()).into_par_iter().map(|i| {
-                let mut changed = self.grow(&best, i)?;
-                changed.extend(self.shrink(&best, i));
+            for i in 0..best.effects().len() {
+                pool.extend(self.grow(&best, i)?);
+                pool.extend(self.shrink(&best, i));
                 if let Ok(smaller) = self.fit(&self.without(&best, i)) {
                     // Single effects of every kind are in the pool.
                     if !smaller.effects().is_empty() {
-                        changed.extend(self.extend(&smaller, FITTED[1])?);
+                        pool.extend(self.extend(&smaller, FITTED[1])?);
                     }
-                    changed.push(smaller);
+                    pool.push(smaller);
                 }
-                Ok(changed)
-            });
-            let changed = changed.collect::<Result<Vec<_>, EstimateError>>()?;
-            pool.extend(changed.into_iter().flatten());
+            }
             for set in leading.iter().filter(|set| !rescaled.holds(set, 1)) {
                 rescaled.note(set, 1);
                 pool.extend(self.rescale(set));

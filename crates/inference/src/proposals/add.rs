@@ -156,7 +156,7 @@ impl Search<'_> {
         base: &Base<'_>,
         most_steps: usize,
     ) -> Vec<CandidateModel> {
-        let fitted = starts.par_iter().filter_map(|start| {
+        let fitted = self.try_each(starts, |start| {
             let adds_mass = start.effects.iter().any(|p| p.action().adds_mass());
             let options = FitOptions {
                 most_steps: if adds_mass {
@@ -169,7 +169,7 @@ impl Search<'_> {
             // A start from which the plant runs away is no candidate.
             Some(self.candidate_model(base.fit(start, &options).ok()?))
         });
-        let mut fitted: Vec<CandidateModel> = fitted.collect();
+        let mut fitted: Vec<CandidateModel> = fitted.into_iter().flatten().collect();
         fitted.retain(|set| set.log_marginal_likelihood.is_finite());
         rank(&mut fitted);
         fitted

@@ -4,7 +4,6 @@
 //! a ridge, or from a size at which it does something else. Effects of the machine are then simulated at
 //! many values and fitted from the best of them; a clock that leaves no line is swept over its range.
 
-use rayon::prelude::*;
 use simgap_effects::{Effect, SiteScale};
 use simgap_estimate::{
     Base, Candidate, EstimateError, FitOptions, Score, Start, fit, fit_initial_states,
@@ -39,9 +38,10 @@ impl Search<'_> {
         base: &CandidateModel,
         linear: &Base<'_>,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        let candidates = self.space.candidates.par_iter();
+        let candidates = self.space.candidates.iter();
         let free = candidates.filter(|(candidate, _)| self.may_hold(base, candidate));
-        let scored = free.map(|(candidate, scale)| {
+        let free: Vec<&(Candidate, SiteScale)> = free.collect();
+        let scored = self.try_each(&free, |(candidate, scale)| {
             let effect = candidate.effect;
             let (scores, most) = if effect.clock().is_some() {
                 // The next best is beside the best.
@@ -56,7 +56,6 @@ impl Search<'_> {
             best.truncate(most);
             best
         });
-        let scored = scored.collect::<Vec<_>>();
         let best = |of: Tried, most: usize| {
             let mut best: Vec<&Score> = scored.iter().flatten().collect();
             best.retain(|score| tried(score.start.effect) == of);
@@ -75,11 +74,12 @@ impl Search<'_> {
             .map(|score| add_scored(&base.fit.estimate, score.clone()))
             .collect();
         let mut fitted = self.fit_all(&starts, linear);
-        let promising: Vec<Start> = fitted
-            .drain(..fitted.len().min(FINISHED))
-            .map(|set| set.fit.estimate)
-            .collect();
-        fitted.extend(self.fit_steps(&promising, linear, STEPS));
+        let promising = fitted.iter().take(FINISHED);
+        let promising: Vec<Start> = promising.map(|set| set.fit.estimate.clone()).collect();
+        let finished = self.fit_steps(&promising, linear, STEPS);
+        // A marginal likelihood is that of a set at its estimate, not of a fit on its way there.
+        fitted.retain(|set| finished.iter().all(|known| known.key() != set.key()));
+        fitted.extend(finished);
         rank(&mut fitted);
         Ok(fitted)
     }
