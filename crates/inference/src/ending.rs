@@ -27,27 +27,23 @@ impl Search<'_> {
     /// A best set that leaves nothing but noise is not at its end where something promises to be worth a name beside it. That is added
     /// here before anything else is tried, as long as the set grows likelier by it.
     pub(crate) fn settle(&self, pool: &mut Vec<CandidateModel>) -> Result<bool, EstimateError> {
-        loop {
-            if self.is_settled(pool)? {
-                return Ok(true);
-            }
+        while !self.is_settled(pool)? {
             let Some(best) = pool.first().cloned() else {
                 return Ok(false);
             };
             if !self.leaves_noise(&best, &self.noise_of(&best)) {
                 return Ok(self.leaves_no_share(&best, pool) && !self.is_promising(&best)?);
             }
-            let larger = match self.is_full(&best) {
-                true => vec![],
-                false => self.extend(&best, ADDED)?,
-            };
-            pool.extend(larger);
-            rank(pool);
+            if !self.is_full(&best) {
+                pool.extend(self.extend(&best, ADDED)?);
+                rank(pool);
+            }
             let stays = pool.first().is_none_or(|first| first.key() == best.key());
             if stays {
-                return Ok(true);
+                break;
             }
         }
+        Ok(true)
     }
 
     /// Whether a set leaves no share that counts of what wrong nominal parameters leave alone, so far as these were fitted.

@@ -11,8 +11,9 @@
 //!
 //! A stage is left out where the best set leaves nothing but noise, or, if it is one of wrong parameters, less than an effect that is worth
 //! a name would move, and no candidate promises to be worth a name: its score pays for its prior and for the values that it
-//! adjusts, it moves an output by enough, and a fit keeps it. So it is where the best set holds as many effects as any and leaves no share
-//! that counts of what wrong parameters leave alone.
+//! adjusts, it moves an output by enough, and a fit keeps it. So it is where the best set leaves no share that counts of what wrong
+//! parameters leave alone, and holds as many effects as any or, once effects were tried from many values, nothing promises. What promises
+//! beside a best set that leaves nothing but noise is added to it before the next stage (`ending.rs`).
 
 use std::collections::BTreeSet;
 
@@ -42,8 +43,6 @@ pub(crate) const ADDED: usize = 4;
 /// Effects of a set at the most; wrong nominal parameters besides.
 const MOST_EFFECTS: usize = 3;
 const MOST_PARAMETERS: usize = 3;
-/// Proposals that are tried side by side before the search is asked whether it ends.
-const SIDE_BY_SIDE: usize = 8;
 /// Rounds of changes to the best set.
 const ROUNDS: usize = 4;
 
@@ -144,14 +143,15 @@ impl<'a> Search<'a> {
         (self.budget.is_spent)()
     }
 
-    /// What comes of some proposals, a few side by side at a time until the search ends: what promises most comes first.
+    /// What comes of some proposals, in their order until the search ends. As many are tried side by side, before it is asked whether it
+    /// does, as are fitted on top of a set.
     pub(crate) fn try_each<T: Sync, R: Send>(
         &self,
         proposals: &[T],
         outcome: impl Fn(&T) -> R + Sync,
     ) -> Vec<R> {
         let mut outcomes = Vec::with_capacity(proposals.len());
-        for few in proposals.chunks(SIDE_BY_SIDE) {
+        for few in proposals.chunks(FITTED[1]) {
             if self.is_spent() {
                 break;
             }
