@@ -140,7 +140,7 @@ impl LinearSystem {
         let merit = Merit::new(problem, weights);
         let (_, variance) = merit.of(&layout, &theta, &at.discrepancy);
         let channel_weights = merit.weights(&variance);
-        let grams = grams(&at.columns, variance.len(), [&[], &[]]);
+        let grams = grams(&at.columns, variance.len(), [&[], &[]], &problem.effort);
         let (hessian, gradient) = normal_equations(&layout, &theta, &at, &grams, &channel_weights);
         Ok(LinearSystem {
             layout,

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use faer::Mat;
 
+use crate::effort::Effort;
 use crate::linearise::Column;
 use crate::products::{add_scaled, products_of};
 use crate::signals::Signals;
@@ -21,7 +22,7 @@ pub(crate) struct Gram {
 
 impl Gram {
     /// Of these columns; what others hold of them is taken from there.
-    fn of(columns: &[Column], channels: usize, known: [Option<&Gram>; 2]) -> Gram {
+    fn of(columns: &[Column], channels: usize, known: [Option<&Gram>; 2], effort: &Effort) -> Gram {
         let places: Vec<Vec<Option<usize>>> = known
             .iter()
             .map(|gram| {
@@ -41,6 +42,12 @@ impl Gram {
         };
         let signals: Vec<&Signals> = columns.iter().map(AsRef::as_ref).collect();
         let is_wanted = |a: usize, b: usize| b <= a && taken(a, b).is_none();
+        let below = (0..columns.len()).flat_map(|a| (0..=a).map(move |b| (a, b)));
+        let pairs = below.filter(|&(a, b)| is_wanted(a, b)).count();
+        let lengths = signals
+            .iter()
+            .flat_map(|signals| signals.iter().map(Vec::len));
+        effort.add_products(pairs * channels, lengths.max().unwrap_or(0));
         let mut of_channel: Vec<Mat<f64>> = (0..channels)
             .map(|c| products_of(&signals, &signals, c, is_wanted))
             .collect();
@@ -77,10 +84,17 @@ impl Gram {
 }
 
 /// Those of all runs, with what is known from elsewhere: run by run as well, or nothing.
-pub(crate) fn grams(columns: &[Vec<Column>], channels: usize, known: [&[Gram]; 2]) -> Vec<Gram> {
+pub(crate) fn grams(
+    columns: &[Vec<Column>],
+    channels: usize,
+    known: [&[Gram]; 2],
+    effort: &Effort,
+) -> Vec<Gram> {
     let runs = columns.iter().enumerate();
-    runs.map(|(run, columns)| Gram::of(columns, channels, known.map(|known| known.get(run))))
-        .collect()
+    let of = |(run, columns): (usize, &Vec<Column>)| {
+        Gram::of(columns, channels, known.map(|known| known.get(run)), effort)
+    };
+    runs.map(of).collect()
 }
 
 #[cfg(test)]
@@ -100,9 +114,9 @@ mod tests {
         let base: Vec<Column> = order(&[0, 2, 4, 5]);
         let last: Vec<Column> = order(&[6, 1, 5, 0]);
         let now: Vec<Column> = order(&[3, 5, 0, 6, 2, 4]);
-        let fresh = |columns: &[Column]| Gram::of(columns, 2, [None, None]);
+        let fresh = |columns: &[Column]| Gram::of(columns, 2, [None, None], &Effort::default());
         let known = [Some(&fresh(&last)), Some(&fresh(&base))];
-        let taken = Gram::of(&now, 2, known).weighted(&[2.0, 0.3]);
+        let taken = Gram::of(&now, 2, known, &Effort::default()).weighted(&[2.0, 0.3]);
         let computed = fresh(&now).weighted(&[2.0, 0.3]);
         for a in 0..now.len() {
             for b in 0..=a {

@@ -193,7 +193,8 @@ impl Problem {
         jobs: &[Job<'_>],
     ) -> Vec<Result<Vec<Vec<f64>>, EstimateError>> {
         for job in jobs {
-            self.effort.add(job.run, self.model.dof_count());
+            self.effort
+                .add_run(job.run, job.simulator.steps_per_sample());
         }
         predict_all(jobs)
     }

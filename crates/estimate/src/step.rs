@@ -117,7 +117,8 @@ impl Line<'_> {
         let layout = self.layout;
         let (_, variance) = self.merit.of(layout, theta, &at.discrepancy);
         let weights = self.merit.weights(&variance);
-        *last = grams(&at.columns, weights.len(), [last, self.known]);
+        let effort = &self.merit.problem.effort;
+        *last = grams(&at.columns, weights.len(), [last, self.known], effort);
         let (hessian, gradient) = normal_equations(layout, theta, at, last, &weights);
         let is_free = |i: &usize| {
             let outward = (theta[*i] <= layout.lower[*i] && gradient[*i] < 0.0)

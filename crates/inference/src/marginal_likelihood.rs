@@ -56,44 +56,45 @@ pub(crate) fn log_marginal_likelihood(
         .collect();
     priors
         .and_then(|terms| integral(fit, &terms))
-        .unwrap_or(f64::NEG_INFINITY)
+        .map_or(f64::NEG_INFINITY, |integral| integral.log)
 }
 
 /// A coordinate that is integrated over.
-struct Term {
+pub(crate) struct Term {
     /// Its place in the curvature.
-    index: usize,
+    pub(crate) index: usize,
     /// du of one unit of its scale, inverted: H in u is H times this squared.
-    factor: f64,
+    pub(crate) factor: f64,
     /// d of (2).
-    apart: f64,
-    /// Standard deviation of its prior.
-    std: f64,
+    pub(crate) apart: f64,
+    /// Standard deviation s of its prior.
+    pub(crate) std: f64,
     /// ln w.
-    log_weight: f64,
-    /// Whether the fit had this prior: g = S⁻¹ d.
-    is_balanced: bool,
+    pub(crate) log_weight: f64,
+    /// s g of (1): what balances the prior of the fit.
+    pub(crate) pull: f64,
 }
 
-fn term(
+/// The term of a coordinate under the prior of the fit.
+pub(crate) fn term(
     index: usize,
     coordinate: &Coordinate,
     effects: &[Placed],
     scale_at: &impl Fn(&Location) -> Option<SiteScale>,
     nominal: NominalPrior,
 ) -> Option<Term> {
-    let plain = |apart: f64, std: f64, factor: f64, is_balanced: bool| Term {
+    let plain = |apart: f64, std: f64, factor: f64| Term {
         index,
         factor,
         apart,
         std,
         log_weight: 0.0,
-        is_balanced,
+        pull: apart / std,
     };
     let Coordinate { value, scale, .. } = *coordinate;
     match coordinate.owner {
-        Owner::State => Some(plain(0.0, STATE_STD, 1.0, false)),
-        Owner::Nominal(..) => Some(plain(1.0 - value, coordinate.prior_std, 1.0 / scale, true)),
+        Owner::State => Some(plain(0.0, STATE_STD, 1.0)),
+        Owner::Nominal(..) => Some(plain(1.0 - value, coordinate.prior_std, 1.0 / scale)),
         Owner::Effect(e, i) => {
             let placed = effects.get(e)?;
             let parameter = placed.effect.parameters().get(i)?;
@@ -104,20 +105,29 @@ fn term(
                 _ => (placed.effect.prior(i, &scale_at(&placed.at)?), true),
             };
             let local: LocalPrior = prior.local(value, parameter);
+            let apart = local.mean - local.coordinate;
             Some(Term {
                 index,
                 factor: local.slope / scale,
-                apart: local.mean - local.coordinate,
+                apart,
                 std: local.std,
                 log_weight: local.log_weight,
-                is_balanced,
+                pull: if is_balanced { apart / local.std } else { 0.0 },
             })
         }
     }
 }
 
+/// (2), and where the integrand is largest.
+pub(crate) struct Integral {
+    /// ln Z.
+    pub(crate) log: f64,
+    /// x = A⁻¹ b, term by term.
+    pub(crate) mode: Vec<f64>,
+}
+
 /// (2), with S^½ A S^½ = I + S^½ H S^½ in the place of S A.
-fn integral(fit: &Fit, terms: &[Term]) -> Option<f64> {
+pub(crate) fn integral(fit: &Fit, terms: &[Term]) -> Option<Integral> {
     let count = terms.len();
     let hessian = &fit.curvature.hessian;
     let matrix = Mat::from_fn(count, count, |i, j| {
@@ -127,10 +137,7 @@ fn integral(fit: &Fit, terms: &[Term]) -> Option<f64> {
     });
     // d in units of the standard deviation; b likewise.
     let apart: Vec<f64> = terms.iter().map(|term| term.apart / term.std).collect();
-    let right = Mat::from_fn(count, 1, |i, _| match terms[i].is_balanced {
-        true => 0.0,
-        false => apart[i],
-    });
+    let right = Mat::from_fn(count, 1, |i, _| apart[i] - terms[i].pull);
     let factor = matrix.llt(Side::Lower).ok()?;
     let solved = factor.solve(&right);
     let lower = factor.L();
@@ -138,8 +145,10 @@ fn integral(fit: &Fit, terms: &[Term]) -> Option<f64> {
     let regained: f64 = (0..count).map(|i| right[(i, 0)] * solved[(i, 0)]).sum();
     let squared: f64 = apart.iter().map(|d| d * d).sum();
     let log_weight: f64 = terms.iter().map(|term| term.log_weight).sum();
-    let value = log_weight - fit.misfit - 0.5 * squared + 0.5 * regained - 0.5 * log_determinant;
-    value.is_finite().then_some(value)
+    let log = log_weight - fit.misfit - 0.5 * squared + 0.5 * regained - 0.5 * log_determinant;
+    let terms = terms.iter().enumerate();
+    let mode = terms.map(|(i, term)| term.std * solved[(i, 0)]).collect();
+    log.is_finite().then_some(Integral { log, mode })
 }
 
 /// Whether nothing is left of an effect: every size is where it vanishes.

@@ -41,13 +41,13 @@ const LEADING: usize = 3;
 /// Candidates fitted beside each of them; in the place of one of its effects as many as beside a single one.
 pub(crate) const ADDED: usize = 4;
 /// Effects of a set at the most; wrong nominal parameters besides.
-const MOST_EFFECTS: usize = 3;
+pub(crate) const MOST_EFFECTS: usize = 3;
 const MOST_PARAMETERS: usize = 3;
 /// Rounds of changes to the best set.
 const ROUNDS: usize = 4;
 
 /// What counts of a set that holds so many effects of other families and so many wrong nominal parameters.
-fn size(others: usize, parameters: usize) -> usize {
+pub(crate) fn size(others: usize, parameters: usize) -> usize {
     others + parameters.saturating_sub(MOST_PARAMETERS)
 }
 

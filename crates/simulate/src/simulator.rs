@@ -44,6 +44,12 @@ pub struct MemberPath {
 }
 
 impl Simulator {
+    /// Steps that the integration takes for each sample.
+    #[must_use]
+    pub fn steps_per_sample(&self) -> usize {
+        self.substeps
+    }
+
     /// Puts the effects on the nominal model: first what changes its members and masses, then what adds masses,
     /// then forces and maps. `substeps` is used where nonlinear forces act (see [`crate::substeps_for`]); effects
     /// written in the model file are not added here.

@@ -1,8 +1,8 @@
 //! Proposals of sets: where the next fits start. They may miss a set; they do not judge one.
 
 mod add;
-mod compensated;
 mod grow;
+mod model_reduction;
 mod multiple_shooting;
 mod multistart;
 mod recalibrated;

@@ -3,17 +3,18 @@
 //! On a real machine several nominal values are off at once, and what is missing from the model shows only once they are
 //! re-estimated: dry friction that a damper was made to stand for fits with the wrong sign beside that damper. Effects are
 //! looked for beside nominal parameters under a wide prior. What is found is then a proposal like any other: parameters that
-//! have left what the model states of them become effects of the set, with the prior of a wrong one. Which of them is found
-//! both ways: one after the other is added as long as the set grows likelier by it; all are, and go again one by one.
+//! are wrong become effects of the set, the others keep to what the model states. Which of them, the quadratic of the fit tells
+//! for any set of them; the likeliest sets are fitted.
 
-use rayon::prelude::*;
+use std::collections::BTreeSet;
+
 use simgap_effects::{Family, Placed};
 use simgap_estimate::{EstimateError, Fit, FitOptions, Start, linearise_at};
 
-use crate::candidate_model::{CandidateModel, add, is_nominal, name, rank, remove};
+use crate::candidate_model::{CandidateModel, is_nominal, is_of, name, rank, remove};
 use crate::extended::Extended;
-use crate::proposals::compensated::compensated;
-use crate::search::Search;
+use crate::proposals::model_reduction::Reduced;
+use crate::search::{MOST_EFFECTS, Search, size};
 use crate::stretches::recalibrate;
 
 /// Prior on nominal parameters while they are re-estimated: known to a factor of about two.
@@ -24,12 +25,8 @@ const BESIDE: usize = 6;
 /// Sets that are extended, and sets that are proposed.
 const EXTENDED: usize = 1;
 const PROPOSED: usize = 6;
-/// Sets whose parameters are removed again one by one.
-const PRUNED: usize = 2;
-/// Stated standard deviations from which a parameter has left what the model states of it.
-const LEFT: f64 = 2.0;
-/// Parameters that are named at the most.
-const MOST_OFF: usize = 6;
+/// Sets of wrong parameters that are fitted of each, besides that of all.
+const LIKELIEST: usize = 2;
 
 impl Search<'_> {
     /// Every nominal parameter re-estimated under a wide prior; nothing where there is none or the fit fails.
@@ -91,119 +88,88 @@ impl Search<'_> {
         found.retain(|set| set.log_marginal_likelihood.is_finite());
         rank(&mut found);
         found.truncate(PROPOSED);
-        let starts: Vec<Start> = found
-            .iter()
-            .map(|set| self.name_parameters(&set.fit))
+        let namings = found.iter().flat_map(|set| self.namings(&set.fit));
+        let fitted = self.try_each(&namings.collect::<Vec<_>>(), |start| self.fit(start).ok());
+        let mut fitted: Vec<CandidateModel> = fitted.into_iter().flatten().collect();
+        rank(&mut fitted);
+        fitted
+    }
+
+    /// Starts of the likeliest sets in which some nominal parameters of a fit are wrong, and the others as the model states. They are
+    /// looked for from all parameters to none, the one that is missed least at a time, and from none to all. That of most wrong ones is
+    /// among them: it begins where the fit ended, and where small moves part the motions no other finds its way.
+    fn namings(&self, fit: &Fit) -> Vec<Start> {
+        let is_known = |placed: &Placed| {
+            let mut candidates = self.space.candidates.iter();
+            candidates.any(|(known, _)| is_of(placed, known))
+        };
+        let parameters = fit.estimate.placed();
+        let parameters = parameters.filter(|p| is_nominal(p) && is_known(p));
+        let parameters: Vec<(String, f64)> = parameters
+            .map(|placed| (name(placed), self.space.log_prior_of(placed.effect)))
             .collect();
-        let proposed = starts.par_iter().filter_map(|start| self.fit(start).ok());
-        let mut proposed: Vec<CandidateModel> = proposed.collect();
-        rank(&mut proposed);
-        let both_ways = proposed
-            .iter()
-            .take(PRUNED)
-            .flat_map(|set| self.prune_parameters(set));
-        let added = found
-            .iter()
-            .take(PRUNED)
-            .flat_map(|set| self.add_parameters(&set.fit));
-        let both_ways: Vec<CandidateModel> = both_ways.chain(added).collect();
-        proposed.extend(both_ways);
-        proposed
-    }
-
-    /// The effects of a fit beside nominal parameters as stated, then with those that are off, the one that helps most
-    /// first, as long as the set grows likelier.
-    fn add_parameters(&self, wide: &Fit) -> Vec<CandidateModel> {
-        let mut off = self.off(&wide.estimate);
-        let Ok(first) = self.fit(&compensated(wide, is_nominal)) else {
-            return vec![];
+        let weigh = |wrong: BTreeSet<usize>| -> Option<Naming> {
+            let reduced = self.reduced(fit, |placed| {
+                wrong.iter().any(|&i| parameters[i].0 == name(placed))
+            })?;
+            let log_prior: f64 = wrong.iter().map(|&i| parameters[i].1).sum();
+            Some(Naming {
+                log_posterior: log_prior + reduced.log_marginal_likelihood,
+                wrong,
+                reduced,
+            })
         };
-        let mut grown = vec![first];
-        while let Some(last) = grown.last() {
-            let larger = off.par_iter().filter_map(|placed| {
-                let is_named = |other: &Placed| {
-                    let mut named = last.effects().iter().chain([placed]);
-                    named.any(|known| name(known) == name(other))
+        let all: BTreeSet<usize> = (0..parameters.len()).collect();
+        let mut met: Vec<Naming> = vec![];
+        for from in [all, BTreeSet::new()] {
+            let mut at = from.clone();
+            met.extend(weigh(from.clone()));
+            for _ in 0..parameters.len() {
+                let next = (0..parameters.len()).filter(|i| at.contains(i) == from.contains(i));
+                let next = next.filter_map(|i| weigh(&at ^ &BTreeSet::from([i])));
+                let likeliest = next.max_by(|a, b| a.log_posterior.total_cmp(&b.log_posterior));
+                let Some(likeliest) = likeliest else {
+                    break;
                 };
-                self.fit(&named(wide, is_named)).ok()
-            });
-            let best = likeliest(larger.collect());
-            let Some(best) = best.filter(|best| best.log_posterior() > last.log_posterior()) else {
-                break;
-            };
-            off.retain(|placed| {
-                best.effects()
-                    .iter()
-                    .all(|known| name(known) != name(placed))
-            });
-            grown.push(best);
+                at.clone_from(&likeliest.wrong);
+                met.push(likeliest);
+            }
         }
-        grown
-    }
-
-    /// Nominal parameters that have left what the model states of them, the farthest first.
-    fn off(&self, start: &Start) -> Vec<Placed> {
-        let apart = |placed: &Placed| {
-            let std = self.problem.stated_std(placed);
-            let values = placed.values.iter();
-            values
-                .map(|value| (value - 1.0).abs() / std)
-                .fold(0.0, f64::max)
-        };
-        let mut off: Vec<Placed> = start.nominal.clone();
-        off.retain(|placed| apart(placed) > LEFT);
-        off.sort_by(|a, b| apart(b).total_cmp(&apart(a)));
-        off.truncate(MOST_OFF);
-        off
-    }
-
-    /// A start in which every nominal parameter that has left what the model states of it is an effect.
-    fn name_parameters(&self, wide: &Fit) -> Start {
-        let off = self.off(&wide.estimate);
-        named(wide, |placed| {
-            off.iter().any(|known| name(known) == name(placed))
-        })
+        let others = fit.estimate.effects.iter().filter(|p| !is_nominal(p));
+        let others = others.count();
+        met.retain(|naming| size(others, naming.wrong.len()) <= MOST_EFFECTS);
+        met.sort_by(|a, b| {
+            let by_posterior = b.log_posterior.total_cmp(&a.log_posterior);
+            by_posterior.then_with(|| a.wrong.cmp(&b.wrong))
+        });
+        met.dedup_by(|a, b| a.wrong == b.wrong);
+        let all_named = met.iter().max_by_key(|naming| naming.wrong.len());
+        let all_named = all_named.map(|naming| naming.wrong.clone());
+        let proposed = met.into_iter().enumerate().filter(|(i, naming)| {
+            *i < LIKELIEST || all_named.as_ref().is_some_and(|all| *all == naming.wrong)
+        });
+        proposed.map(|(_, naming)| naming.reduced.start).collect()
     }
 
     /// A start without one of the effects of a set; nominal parameters move along with one that returns to its nominal value.
     pub(crate) fn without(&self, set: &CandidateModel, index: usize) -> Start {
         let removed = &set.effects()[index];
-        let start = match is_nominal(removed) {
-            true => compensated(&set.fit, |placed| name(placed) == name(removed)),
-            false => set.fit.estimate.clone(),
+        let is_kept = |placed: &Placed| {
+            let kept = set.effects().iter().enumerate();
+            let mut kept = kept.filter(|(i, _)| *i != index);
+            kept.any(|(_, known)| name(known) == name(placed))
         };
-        remove(&start, index, self.nominal)
-    }
-
-    /// A set with one parameter less, and again, as long as it is likelier so.
-    pub(crate) fn prune_parameters(&self, set: &CandidateModel) -> Vec<CandidateModel> {
-        let mut pruned: Vec<CandidateModel> = vec![];
-        loop {
-            let last = pruned.last().unwrap_or(set);
-            let parameters = (0..last.effects().len()).filter(|&i| is_nominal(&last.effects()[i]));
-            let parameters: Vec<usize> = parameters.collect();
-            let smaller = parameters
-                .par_iter()
-                .filter_map(|&i| self.fit(&self.without(last, i)).ok());
-            let best = likeliest(smaller.collect());
-            match best.filter(|best| best.log_posterior() > last.log_posterior()) {
-                Some(best) => pruned.push(best),
-                None => return pruned,
-            }
+        let moved = is_nominal(removed).then(|| self.reduced(&set.fit, is_kept));
+        match moved.flatten() {
+            Some(reduced) => reduced.start,
+            None => remove(&set.fit.estimate, index, self.nominal),
         }
     }
 }
 
-/// A start in which some nominal parameters are effects, and the others as the model states them.
-fn named(wide: &Fit, is_named: impl Fn(&Placed) -> bool) -> Start {
-    let start = compensated(wide, |placed| !is_named(placed));
-    let off: Vec<Placed> = start.nominal.clone();
-    let off = off.into_iter().filter(|placed| is_named(placed));
-    off.fold(start, |named, placed| add(&named, placed))
-}
-
-fn likeliest(sets: Vec<CandidateModel>) -> Option<CandidateModel> {
-    let by_posterior =
-        |a: &CandidateModel, b: &CandidateModel| a.log_posterior().total_cmp(&b.log_posterior());
-    sets.into_iter().max_by(by_posterior)
+/// Which nominal parameters are wrong, by their places in a list.
+struct Naming {
+    wrong: BTreeSet<usize>,
+    reduced: Reduced,
+    log_posterior: f64,
 }

@@ -26,7 +26,7 @@ impl Search<'_> {
         let Ok(rescaled) = self.fit(&rescaled(&set.fit.estimate, factor, model)) else {
             return vec![];
         };
-        let mut sets = self.prune_parameters(&rescaled);
+        let mut sets = self.with_parameters_named(vec![rescaled.clone()]);
         sets.push(rescaled);
         sets.retain(|set| self.is_allowed(set));
         sets

@@ -1,5 +1,7 @@
 //! Dry friction within one step: equation (4) of [`super::march`].
 
+use super::law::ForceLaw;
+
 /// The dry force over a step.
 #[derive(Clone, Copy)]
 pub(super) struct Dry {
@@ -17,6 +19,25 @@ impl Dry {
         end: 0.0,
         stiffness: 0.0,
     };
+}
+
+/// The friction of a law. Not a closure: one that is handed on by reference is not inlined, and eight lanes wait for eight calls.
+pub(super) trait Level: Copy {
+    /// At a speed, N.
+    fn at(self, speed: f64) -> f64;
+
+    /// The same of a law that would push.
+    #[inline(always)]
+    fn not_below_zero(self, speed: f64) -> f64 {
+        self.at(speed).max(0.0)
+    }
+}
+
+impl Level for &dyn ForceLaw {
+    #[inline(always)]
+    fn at(self, speed: f64) -> f64 {
+        self.dry_level(speed).unwrap_or(0.0)
+    }
 }
 
 /// A step with dry friction, (4): it starts at the velocity `start` and would end at `free` without the friction, when a unit
@@ -53,10 +74,10 @@ pub(super) struct Slid {
 }
 
 impl DryStep {
-    /// `level` is the friction at a speed. What slides all the way is asked for alone, as most steps are of that kind.
+    /// What slides all the way is asked for alone, as most steps are of that kind.
     #[inline(always)]
-    pub(super) fn force(&self, level: impl Fn(f64) -> f64) -> Dry {
-        let slid = self.slid(&level);
+    pub(super) fn force(&self, level: impl Level) -> Dry {
+        let slid = self.slid(level);
         match slid.is_all_the_way {
             true => slid.dry,
             false => self.force_of_any(level),
@@ -65,23 +86,22 @@ impl DryStep {
 
     /// Sliding one way: |v₁| = s v* − G F(½ |v₀| + ½ |v₁|), by fixed-point iteration (levels change little in a step).
     #[inline(always)]
-    pub(super) fn slid(&self, level: impl Fn(f64) -> f64) -> Slid {
+    pub(super) fn slid(&self, level: impl Level) -> Slid {
         let DryStep {
             start,
             free,
             compliance,
             ..
         } = *self;
-        let level = |speed: f64| level(speed).max(0.0);
         let rests = start == 0.0;
         let way = sign(choose(rests, free, start));
-        let mean_level = |speed: f64| level(0.5 * (start.abs() + speed));
         let mut speed = way * free;
         for _ in 0..3 {
-            speed = (way * free - compliance * mean_level(speed.max(0.0))).max(0.0);
+            let mean = level.not_below_zero(0.5 * (start.abs() + speed.max(0.0)));
+            speed = (way * free - compliance * mean).max(0.0);
         }
-        let mean = way * mean_level(speed);
-        let end = way * level(speed);
+        let mean = way * level.not_below_zero(0.5 * (start.abs() + speed));
+        let end = way * level.not_below_zero(speed);
         let ahead = free - compliance * mean;
         Slid {
             dry: Dry {
@@ -97,28 +117,29 @@ impl DryStep {
 
     /// In a step of any kind. Every case is computed and one chosen, so that the lanes of [`super::lanes`] can take different ones.
     #[inline(always)]
-    pub(super) fn force_of_any(&self, level: impl Fn(f64) -> f64) -> Dry {
+    pub(super) fn force_of_any(&self, level: impl Level) -> Dry {
         let Slid {
             dry, ahead, way, ..
-        } = self.slid(&level);
+        } = self.slid(level);
         let DryStep {
             before,
             start,
             free,
             compliance,
         } = *self;
-        let level = |speed: f64| level(speed).max(0.0);
-        let at_rest = level(0.0);
+        let at_rest = level.not_below_zero(0.0);
         let most = compliance * at_rest;
         let rests = start == 0.0;
         let stuck = free / compliance;
         // A sliding member that turns: what stopped holds against the other forces, and the mean also
         // brakes what was moving; or it slides on the other way.
         let share = start / (start - ahead);
-        let turned = share * dry.mean - (1.0 - share) * way * level(0.5 * ahead.abs());
-        let turned_end = -way * level((free - compliance * turned).abs());
+        let turned_level = level.not_below_zero(0.5 * ahead.abs());
+        let turned = share * dry.mean - (1.0 - share) * way * turned_level;
+        let turned_end = -way * level.not_below_zero((free - compliance * turned).abs());
         let pauses = before.max(-at_rest).min(at_rest);
-        let carried = choose(free == 0.0, pauses, level(free.abs()) * sign(free));
+        let moved_along = level.not_below_zero(free.abs()) * sign(free);
+        let carried = choose(free == 0.0, pauses, moved_along);
 
         let prescribed = compliance <= 0.0;
         let slides = choose_if(rests, free.abs() > most, ahead * way >= 0.0);

@@ -365,7 +365,7 @@ impl<'a> Plant<'a> {
                 free: velocity,
                 compliance: dry_give_velocity,
             };
-            dry = step.force(|speed| law.dry_level(speed).unwrap_or(0.0));
+            dry = step.force(law.as_ref());
             displacement -= dry_give * dry.mean;
             velocity -= dry_give_velocity * dry.mean;
         }

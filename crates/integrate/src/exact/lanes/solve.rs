@@ -9,7 +9,7 @@ use pulp::Simd;
 use super::joint::{Acting, JointLanes};
 use super::wide::Wide;
 use super::{LANES, Pack};
-use crate::exact::dry::DryStep;
+use crate::exact::dry::{DryStep, Level};
 use crate::exact::law::{Followed, MemberMotion, Tangent};
 use crate::exact::plant::AT_REST;
 
@@ -40,6 +40,27 @@ pub(super) trait LawLanes {
     ) -> Followed;
 
     fn dry_level(&self, lane: usize, speed: f64) -> f64;
+}
+
+/// The friction of one of eight laws.
+struct LevelOf<'a, L> {
+    laws: &'a L,
+    lane: usize,
+}
+
+impl<L> Clone for LevelOf<'_, L> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<L> Copy for LevelOf<'_, L> {}
+
+impl<L: LawLanes> Level for LevelOf<'_, L> {
+    #[inline(always)]
+    fn at(self, speed: f64) -> f64 {
+        self.laws.dry_level(self.lane, speed)
+    }
 }
 
 /// What the laws say at a trial of S of their joint: D of the one that rubs, which moves the joint, then its part of S.
@@ -92,14 +113,14 @@ fn dry_forces<S: Simd>(
     let mut is_done = !rests.any();
     if is_done {
         for l in 0..LANES {
-            let slid = step(l).slid(|speed| laws.dry_level(l, speed));
+            let slid = step(l).slid(LevelOf { laws, lane: l });
             (mean.0[l], end.0[l]) = (slid.dry.mean, slid.dry.end);
             is_done &= slid.is_all_the_way;
         }
     }
     if !is_done {
         for l in 0..LANES {
-            let now = step(l).force_of_any(|speed| laws.dry_level(l, speed));
+            let now = step(l).force_of_any(LevelOf { laws, lane: l });
             (mean.0[l], end.0[l], stiffness.0[l]) = (now.mean, now.end, now.stiffness);
         }
     }
