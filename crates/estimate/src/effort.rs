@@ -16,7 +16,7 @@ const MULTIPLICATIONS: u64 = 7;
 /// How much has been done on a problem: samples that were simulated, by the steps that each took, and sensitivities that were multiplied,
 /// each with about what it costs. Clones share one count. It is the same for the same work, whatever the machine and the number of
 /// threads: a limit on it ends a search at the same place everywhere, which a limit on seconds does not. A unit is about six nanoseconds
-/// of one core of 2023.
+/// of one core.
 ///
 /// ```
 /// assert_eq!(simgap_estimate::Effort::default().spent(), 0);

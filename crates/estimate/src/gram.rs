@@ -42,18 +42,14 @@ impl Gram {
         };
         let signals: Vec<&Signals> = columns.iter().map(AsRef::as_ref).collect();
         let is_wanted = |a: usize, b: usize| b <= a && taken(a, b).is_none();
-        let below = (0..columns.len()).flat_map(|a| (0..=a).map(move |b| (a, b)));
-        let pairs = below.filter(|&(a, b)| is_wanted(a, b)).count();
-        let lengths = signals
-            .iter()
-            .flat_map(|signals| signals.iter().map(Vec::len));
-        effort.add_products(pairs * channels, lengths.max().unwrap_or(0));
         let mut of_channel: Vec<Mat<f64>> = (0..channels)
             .map(|c| products_of(&signals, &signals, c, is_wanted))
             .collect();
+        let mut computed = 0;
         for a in 0..columns.len() {
             for b in 0..=a {
                 let Some(known) = taken(a, b) else {
+                    computed += channels;
                     continue;
                 };
                 for (own, known) in of_channel.iter_mut().zip(known) {
@@ -61,6 +57,8 @@ impl Gram {
                 }
             }
         }
+        let lengths = signals.iter().flat_map(|signals| signals.iter());
+        effort.add_products(computed, lengths.map(Vec::len).max().unwrap_or(0));
         Gram {
             columns: columns.to_vec(),
             of_channel,

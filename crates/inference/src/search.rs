@@ -52,7 +52,7 @@ pub(crate) fn size(others: usize, parameters: usize) -> usize {
 }
 
 /// Effects of other families and wrong nominal parameters of a set.
-fn counts(set: &CandidateModel) -> [usize; 2] {
+pub(crate) fn counts(set: &CandidateModel) -> [usize; 2] {
     let parameters = set.effects().iter().filter(|p| is_nominal(p)).count();
     [set.effects().len() - parameters, parameters]
 }

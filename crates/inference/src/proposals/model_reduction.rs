@@ -60,8 +60,6 @@ fn reduced(
     is_wrong: impl Fn(&Placed) -> bool,
     stated_std: impl Fn(&Placed) -> f64,
 ) -> Option<Reduced> {
-    let coordinates = fit.curvature.coordinates.iter().enumerate();
-    let used: Vec<(usize, &Coordinate)> = coordinates.filter(|(_, c)| !c.is_held).collect();
     let prior = |coordinate: &Coordinate, placed: &Placed, k: usize| -> Option<LocalPrior> {
         if !is_wrong(placed) {
             return stated(coordinate.value, stated_std(placed));
@@ -69,7 +67,7 @@ fn reduced(
         let prior = placed.effect.prior(k, &scale_at(&placed.at)?);
         Some(prior.local(coordinate.value, placed.effect.parameters().get(k)?))
     };
-    let of_coordinate = |&(index, coordinate): &(usize, &Coordinate)| -> Option<Term> {
+    let of_coordinate = |(index, coordinate): (usize, &Coordinate)| -> Option<Term> {
         let effects = &fit.estimate.effects;
         let own = term(index, coordinate, effects, &scale_at, NominalPrior::Wrong)?;
         let Some((placed, k)) = nominal_of(&fit.estimate, coordinate.owner) else {
@@ -87,7 +85,9 @@ fn reduced(
             pull: own.pull * (factor / own.factor) * (prior.std / own.std),
         })
     };
-    let terms: Vec<Term> = used.iter().map(of_coordinate).collect::<Option<_>>()?;
+    let coordinates = fit.curvature.coordinates.iter().enumerate();
+    let used = coordinates.filter(|(_, coordinate)| !coordinate.is_held);
+    let terms: Vec<Term> = used.map(of_coordinate).collect::<Option<_>>()?;
     let integral = integral(fit, &terms)?;
     let mut moved = fit.estimate.clone();
     let mut of_states = vec![];
@@ -149,8 +149,8 @@ fn nominal_of(estimate: &Start, owner: Owner) -> Option<(&Placed, usize)> {
     is_nominal(placed).then_some((placed, k))
 }
 
-/// Moves a value by x of which a unit is `slope` of it: along the logarithm of its distance from nothing where that is its coordinate, and of a
-/// nominal parameter always. Values that records have of their own stay.
+/// Moves a value by x, of which a unit is `slope` of it: along the logarithm of its distance from nothing where that is its coordinate,
+/// and of a nominal parameter always. Values that records have of their own stay.
 fn move_value(start: &mut Start, coordinate: &Coordinate, slope: f64, x: f64) {
     let (placed, k) = match coordinate.owner {
         Owner::Effect(e, k) => (start.effects.get_mut(e), k),

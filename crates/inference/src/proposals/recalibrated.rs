@@ -9,12 +9,12 @@
 use std::collections::BTreeSet;
 
 use simgap_effects::{Family, Placed};
-use simgap_estimate::{EstimateError, Fit, FitOptions, Start, linearise_at};
+use simgap_estimate::{EstimateError, FitOptions, Start, linearise_at};
 
 use crate::candidate_model::{CandidateModel, is_nominal, is_of, name, rank, remove};
 use crate::extended::Extended;
 use crate::proposals::model_reduction::Reduced;
-use crate::search::{MOST_EFFECTS, Search, size};
+use crate::search::{MOST_EFFECTS, Search, counts, size};
 use crate::stretches::recalibrate;
 
 /// Prior on nominal parameters while they are re-estimated: known to a factor of about two.
@@ -88,7 +88,7 @@ impl Search<'_> {
         found.retain(|set| set.log_marginal_likelihood.is_finite());
         rank(&mut found);
         found.truncate(PROPOSED);
-        let namings = found.iter().flat_map(|set| self.namings(&set.fit));
+        let namings = found.iter().flat_map(|set| self.namings(set));
         let fitted = self.try_each(&namings.collect::<Vec<_>>(), |start| self.fit(start).ok());
         let mut fitted: Vec<CandidateModel> = fitted.into_iter().flatten().collect();
         rank(&mut fitted);
@@ -98,20 +98,19 @@ impl Search<'_> {
     /// Starts of the likeliest sets in which some nominal parameters of a fit are wrong, and the others as the model states. They are
     /// looked for from all parameters to none, the one that is missed least at a time, and from none to all. That of most wrong ones is
     /// among them: it begins where the fit ended, and where small moves part the motions no other finds its way.
-    fn namings(&self, fit: &Fit) -> Vec<Start> {
+    fn namings(&self, set: &CandidateModel) -> Vec<Start> {
         let is_known = |placed: &Placed| {
             let mut candidates = self.space.candidates.iter();
             candidates.any(|(known, _)| is_of(placed, known))
         };
-        let parameters = fit.estimate.placed();
+        let parameters = set.fit.estimate.placed();
         let parameters = parameters.filter(|p| is_nominal(p) && is_known(p));
         let parameters: Vec<(String, f64)> = parameters
             .map(|placed| (name(placed), self.space.log_prior_of(placed.effect)))
             .collect();
         let weigh = |wrong: BTreeSet<usize>| -> Option<Naming> {
-            let reduced = self.reduced(fit, |placed| {
-                wrong.iter().any(|&i| parameters[i].0 == name(placed))
-            })?;
+            let names: BTreeSet<&String> = wrong.iter().map(|&i| &parameters[i].0).collect();
+            let reduced = self.reduced(&set.fit, |placed| names.contains(&name(placed)))?;
             let log_prior: f64 = wrong.iter().map(|&i| parameters[i].1).sum();
             Some(Naming {
                 log_posterior: log_prior + reduced.log_marginal_likelihood,
@@ -135,8 +134,7 @@ impl Search<'_> {
                 met.push(likeliest);
             }
         }
-        let others = fit.estimate.effects.iter().filter(|p| !is_nominal(p));
-        let others = others.count();
+        let [others, _] = counts(set);
         met.retain(|naming| size(others, naming.wrong.len()) <= MOST_EFFECTS);
         met.sort_by(|a, b| {
             let by_posterior = b.log_posterior.total_cmp(&a.log_posterior);
@@ -151,13 +149,12 @@ impl Search<'_> {
         proposed.map(|(_, naming)| naming.reduced.start).collect()
     }
 
-    /// A start without one of the effects of a set; nominal parameters move along with one that returns to its nominal value.
+    /// A start without one of the effects of a set; the others move along with a nominal parameter that returns to what the model states.
     pub(crate) fn without(&self, set: &CandidateModel, index: usize) -> Start {
         let removed = &set.effects()[index];
         let is_kept = |placed: &Placed| {
-            let kept = set.effects().iter().enumerate();
-            let mut kept = kept.filter(|(i, _)| *i != index);
-            kept.any(|(_, known)| name(known) == name(placed))
+            let mut effects = set.effects().iter();
+            name(placed) != name(removed) && effects.any(|known| name(known) == name(placed))
         };
         let moved = is_nominal(removed).then(|| self.reduced(&set.fit, is_kept));
         match moved.flatten() {
