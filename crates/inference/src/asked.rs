@@ -1,4 +1,4 @@
-//! Sets that were asked whether all their effects are relevant.
+//! Sets that were asked what they stand for: themselves, or a part of theirs that holds all that is worth a name.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -6,14 +6,16 @@ use std::collections::btree_map::Entry;
 
 use simgap_estimate::EstimateError;
 
-use crate::candidate_model::{CandidateModel, by_rank, keep, name, rank};
+use crate::candidate_model::{CandidateModel, by_key, keep, name};
 use crate::search::Search;
 
-/// Sets, and of each whether all its effects are relevant, once it was asked.
+/// Sets, each with what it stands for, once it was asked.
 #[derive(Default)]
 pub(crate) struct Asked {
     pub(crate) sets: Vec<CandidateModel>,
-    pub(crate) relevant: Vec<Option<bool>>,
+    /// Log posterior of each, with that of all that stand for it; minus infinity of those that stand for another.
+    weights: Vec<f64>,
+    stands_for: Vec<Option<usize>>,
     /// Where each set is, by its key.
     pub(crate) places: BTreeMap<Vec<String>, usize>,
 }
@@ -24,35 +26,73 @@ impl Asked {
         for set in sets {
             if let Entry::Vacant(place) = self.places.entry(set.key()) {
                 place.insert(self.sets.len());
+                self.weights.push(set.log_posterior());
                 self.sets.push(set);
-                self.relevant.push(None);
+                self.stands_for.push(None);
             }
         }
     }
 
-    /// The likeliest of the sets that were not asked.
-    pub(crate) fn next(&self) -> Option<usize> {
-        let open = (0..self.sets.len()).filter(|&i| self.relevant[i].is_none());
-        let posterior = |i: &usize| self.sets[*i].log_posterior();
-        // Of equals the first.
-        open.rev()
-            .max_by(|a, b| posterior(a).total_cmp(&posterior(b)))
+    /// Adds a set that is not among them; where it is.
+    pub(crate) fn place(&mut self, set: CandidateModel) -> usize {
+        let key = set.key();
+        self.extend(vec![set]);
+        self.places[&key]
     }
 
-    /// All but those that hold an irrelevant effect, likeliest first.
-    pub(crate) fn kept(self) -> Vec<CandidateModel> {
-        let sets = self.sets.into_iter().zip(self.relevant);
-        let kept = sets.filter(|(_, relevant)| *relevant != Some(false));
-        let mut kept: Vec<CandidateModel> = kept.map(|(set, _)| set).collect();
-        rank(&mut kept);
-        kept
+    /// The likeliest of the sets that were not asked, unless its log posterior is further below that of the best answer than this.
+    pub(crate) fn next(&self, below: f64) -> Option<usize> {
+        let places = || 0..self.sets.len();
+        let weight = |i: &usize| self.weights[*i];
+        let answers = places().filter(|i| self.stands_for[*i] == Some(*i));
+        let best = answers
+            .map(|i| weight(&i))
+            .fold(f64::NEG_INFINITY, f64::max);
+        let open = places().filter(|i| self.stands_for[*i].is_none());
+        // Of equals the first.
+        let next = open.rev().max_by(|a, b| weight(a).total_cmp(&weight(b)));
+        next.filter(|i| weight(i) >= best - below)
+    }
+
+    /// Notes that a set stands for another, or for itself.
+    pub(crate) fn note(&mut self, index: usize, answer: usize) {
+        // What the other stands for, if it was asked before. Parts are smaller: it is not the set itself, but for laws that turn
+        // into each other.
+        let mut end = answer;
+        while let Some(next) = self.stands_for[end].filter(|next| *next != end) {
+            end = next;
+        }
+        self.stands_for[index] = Some(end);
+        if end != index {
+            self.weights[end] = log_sum(self.weights[end], self.weights[index]);
+            self.weights[index] = f64::NEG_INFINITY;
+        }
+    }
+
+    /// All that stand for themselves or were not asked, likeliest first, each with its log posterior.
+    pub(crate) fn kept(self) -> (Vec<CandidateModel>, Vec<f64>) {
+        let order = self.order();
+        let weights = order.iter().map(|i| self.weights[*i]).collect();
+        let mut sets: Vec<Option<CandidateModel>> = self.sets.into_iter().map(Some).collect();
+        let kept = order.iter().filter_map(|i| sets[*i].take());
+        (kept.collect(), weights)
     }
 
     /// The likeliest of those.
     pub(crate) fn best(&self) -> Option<&CandidateModel> {
-        let sets = self.sets.iter().zip(&self.relevant);
-        let kept = sets.filter(|(_, relevant)| **relevant != Some(false));
-        kept.map(|(set, _)| set).min_by(|a, b| by_rank(a, b))
+        self.order().first().map(|i| &self.sets[*i])
+    }
+
+    /// Where they are, likeliest first.
+    fn order(&self) -> Vec<usize> {
+        let places = 0..self.sets.len();
+        let stays = |i: &usize| self.stands_for[*i].is_none_or(|answer| answer == *i);
+        let mut order: Vec<usize> = places.filter(stays).collect();
+        order.sort_by(|a, b| {
+            let by_weight = self.weights[*b].total_cmp(&self.weights[*a]);
+            by_weight.then_with(|| by_key(&self.sets[*a], &self.sets[*b]))
+        });
+        order
     }
 
     /// Some of the effects of a set, fitted without the others.
@@ -69,5 +109,115 @@ impl Asked {
         }
         let start = keep(&set.fit.estimate, |i| part.contains(&i), search.nominal);
         search.fit(&start).map(Cow::Owned)
+    }
+}
+
+/// ln(eᵃ + eᵇ).
+fn log_sum(a: f64, b: f64) -> f64 {
+    let (low, high) = (a.min(b), a.max(b));
+    if low == f64::NEG_INFINITY {
+        return high;
+    }
+    high + (low - high).exp().ln_1p()
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+    use simgap_effects::{Placed, find};
+    use simgap_estimate::{Curvature, Fit, Start};
+    use simgap_model::Location;
+
+    use super::*;
+
+    /// A set of sensor biases in some channels.
+    fn set(log_posterior: f64, channels: &[&str]) -> CandidateModel {
+        let bias = |channel: &&str| {
+            let at = Location::Channel((*channel).into());
+            Placed::new(find("sensor_bias").unwrap(), at, vec![1.0])
+        };
+        CandidateModel {
+            log_marginal_likelihood: log_posterior,
+            log_prior: 0.0,
+            fit: Fit {
+                estimate: Start {
+                    effects: channels.iter().map(bias).collect(),
+                    nominal: vec![],
+                    initial: vec![],
+                },
+                objective: 0.0,
+                misfit: 0.0,
+                variance: vec![],
+                intervals: vec![],
+                nominal_intervals: vec![],
+                curvature: Curvature {
+                    hessian: Mat::zeros(0, 0),
+                    coordinates: vec![],
+                },
+                discrepancy: vec![],
+                iterations: 0,
+            },
+        }
+    }
+
+    /// A small answer with two that refine it in a row, beside one that is likelier than it and less likely than these.
+    fn asked() -> Asked {
+        let mut asked = Asked::default();
+        asked.extend(vec![
+            set(-40.0, &["a"]),
+            set(0.0, &["b"]),
+            set(2.0, &["a", "c"]),
+            set(1.0, &["a", "c", "d"]),
+        ]);
+        asked
+    }
+
+    #[test]
+    fn what_refines_an_answer_speaks_for_it() {
+        let mut asked = asked();
+        assert_eq!(asked.next(12.0), Some(2));
+        asked.note(2, 0);
+        assert_eq!(asked.next(12.0), Some(0), "as likely as what stands for it");
+        asked.note(0, 0);
+        assert_eq!(asked.next(12.0), Some(3));
+        asked.note(3, 2);
+        assert_eq!(asked.next(12.0), Some(1));
+        let (sets, weights) = asked.kept();
+        let keys: Vec<Vec<String>> = sets.iter().map(CandidateModel::key).collect();
+        assert_eq!(keys, [["sensor_bias channel a"], ["sensor_bias channel b"]]);
+        let all: f64 = weights.iter().map(|weight| weight.exp()).sum();
+        let sum: f64 = [-40.0, 0.0, 2.0, 1.0].iter().map(|w: &f64| w.exp()).sum();
+        assert!((all - sum).abs() < 1e-12 * sum, "no probability is lost");
+        assert!((weights[0] - (2f64.exp() + 1f64.exp()).ln()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_order_in_which_sets_are_asked_does_not_matter() {
+        let mut one = asked();
+        one.note(3, 2);
+        one.note(2, 0);
+        let mut other = asked();
+        other.note(2, 0);
+        other.note(3, 2);
+        let [one, other] = [one, other].map(|asked| asked.kept().1);
+        assert!(one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-12));
+    }
+
+    #[test]
+    fn what_is_far_below_the_best_answer_is_not_asked() {
+        let mut asked = asked();
+        asked.note(2, 2);
+        asked.note(3, 3);
+        asked.note(1, 1);
+        assert_eq!(asked.next(12.0), None);
+        assert_eq!(asked.next(50.0), Some(0));
+    }
+
+    #[test]
+    fn sums_of_logarithms() {
+        let nothing = f64::NEG_INFINITY;
+        assert_eq!(log_sum(nothing, nothing), nothing);
+        assert_eq!(log_sum(nothing, 3.0), 3.0);
+        assert!((log_sum(1000.0, 1000.0) - (1000.0 + 2f64.ln())).abs() < 1e-12);
     }
 }

@@ -93,10 +93,15 @@ pub(crate) fn is_of(placed: &Placed, candidate: &Candidate) -> bool {
     placed.effect.kind() == candidate.effect.kind() && placed.at == candidate.at
 }
 
+/// In the order of their names.
+pub(crate) fn by_key(a: &CandidateModel, b: &CandidateModel) -> Ordering {
+    a.key().cmp(&b.key())
+}
+
 /// The likelier first.
-pub(crate) fn by_rank(a: &CandidateModel, b: &CandidateModel) -> Ordering {
+fn by_rank(a: &CandidateModel, b: &CandidateModel) -> Ordering {
     let by_posterior = b.log_posterior().total_cmp(&a.log_posterior());
-    by_posterior.then_with(|| a.key().cmp(&b.key()))
+    by_posterior.then_with(|| by_key(a, b))
 }
 
 /// The set that leaves least, by its likelihood.

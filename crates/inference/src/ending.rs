@@ -7,15 +7,21 @@ use crate::candidate_model::{CandidateModel, is_nominal, least, rank};
 use crate::gap::{Gap, RELEVANT_SHARE};
 use crate::motion;
 use crate::noise_model::{NOISE_KNOWN, noise_variance, rounding_variance, stepped};
-use crate::search::{ADDED, Search};
+use crate::search::{ADDED, Search, counts};
 
 impl Search<'_> {
-    /// Whether the best set is at its end, or holds as many effects as any and leaves no share that counts.
-    pub(crate) fn is_settled(&self, pool: &[CandidateModel]) -> Result<bool, EstimateError> {
+    /// Whether the best set is at its end, or holds as many effects as any and leaves no share that counts. One of more effects than were
+    /// tried together, beside wrong nominal parameters, may stand in for fewer that were not found alone.
+    pub(crate) fn is_settled(
+        &self,
+        pool: &[CandidateModel],
+        tried: usize,
+    ) -> Result<bool, EstimateError> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        if self.is_spent() || (self.is_full(best) && self.leaves_no_share(best, pool)) {
+        let is_full = self.is_full(best) && counts(best)[0] <= tried;
+        if self.is_spent() || (is_full && self.leaves_no_share(best, pool)) {
             return Ok(true);
         }
         self.is_at_its_end(best)
@@ -26,13 +32,19 @@ impl Search<'_> {
     ///
     /// A best set that leaves nothing but noise is not at its end where something promises to be worth a name beside it. That is added
     /// here before anything else is tried, as long as the set grows likelier by it.
-    pub(crate) fn settle(&self, pool: &mut Vec<CandidateModel>) -> Result<bool, EstimateError> {
-        while !self.is_settled(pool)? {
+    pub(crate) fn settle(
+        &self,
+        pool: &mut Vec<CandidateModel>,
+        tried: usize,
+    ) -> Result<bool, EstimateError> {
+        while !self.is_settled(pool, tried)? {
             let Some(best) = pool.first().cloned() else {
                 return Ok(false);
             };
             if !self.leaves_noise(&best, &self.noise_of(&best)) {
-                return Ok(self.leaves_no_share(&best, pool) && !self.is_promising(&best)?);
+                let is_tried = counts(&best)[0] <= tried;
+                let leaves_little = is_tried && self.leaves_no_share(&best, pool);
+                return Ok(leaves_little && !self.is_promising(&best)?);
             }
             if !self.is_full(&best) {
                 pool.extend(self.extend(&best, ADDED)?);

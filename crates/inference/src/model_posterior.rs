@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! p(S | y) = p(S) Z(S) / Σ p(S') Z(S')                                     (1)
-//! p(effect | y) = Σ p(S | y) over the sets that hold it or one that cannot be told from it     (2)
+//! p(answer | y) = Σ p(S | y) over the sets that stand for it               (2)
+//! p(effect | y) = Σ p(answer | y) over the answers that hold it or one that cannot be told from it     (3)
 //! ```
 //!
-//! A set is a candidate only if each of its effects closes a share of the gap that is worth a name (*practical
-//! relevance*): what closes less belongs to the smaller set. Effects that can be exchanged within the stated odds cannot
+//! A set is an answer if each of its effects closes a share of the gap that is worth a name (*practical
+//! relevance*). One with an effect that closes less stands for what the set without that stands for: no real machine is exactly what
+//! a few laws say, and what refines an answer speaks for it, not for another that explains as much by a larger effect. Effects that can be exchanged within the stated odds cannot
 //! be told apart; an effect that can be left out within them cannot be told from none, and is not named.
 
 use simgap_effects::{Equivalent, Placed, same_place};
@@ -44,7 +46,7 @@ pub struct Rival {
 pub struct EffectPosterior {
     /// The effect.
     pub placed: Placed,
-    /// (2), among the sets.
+    /// (3), among the answers.
     pub probability: f64,
     /// ln Z + ln p lost without it; infinite where the others alone are no set.
     pub worth: f64,
@@ -60,9 +62,9 @@ pub struct EffectPosterior {
 
 /// The posterior.
 pub struct ModelPosterior {
-    /// The sets, likeliest first.
+    /// The answers, likeliest first.
     pub sets: Vec<CandidateModel>,
-    /// (1) of each.
+    /// (2) of each.
     pub probabilities: Vec<f64>,
     /// The effects of the first.
     pub effects: Vec<EffectPosterior>,
@@ -110,11 +112,11 @@ pub fn model_posterior(
             .collect::<Result<Vec<_>, EstimateError>>()?,
         None => vec![],
     };
-    let sets = asked.kept();
-    let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
-    let odds: Vec<f64> = sets
+    let (sets, log_posteriors) = asked.kept();
+    let best = log_posteriors.first().copied().unwrap_or_default();
+    let odds: Vec<f64> = log_posteriors
         .iter()
-        .map(|set| (set.log_posterior() - best).exp())
+        .map(|log_posterior| (log_posterior - best).exp())
         .collect();
     let all: f64 = odds.iter().sum();
     let mut posterior = ModelPosterior {
@@ -186,7 +188,7 @@ impl Relevance {
         })
     }
 
-    /// Of each set whether every effect is relevant, as far down as sets count.
+    /// What each set stands for, as far down as sets count.
     fn ask(
         &self,
         search: &Search<'_>,
@@ -196,17 +198,10 @@ impl Relevance {
         rank(&mut pool);
         let mut asked = Asked::default();
         asked.extend(pool);
-        let mut best = f64::NEG_INFINITY;
-        while let Some(index) = asked.next() {
+        while let Some(index) = asked.next(NEGLIGIBLE) {
             let set = asked.sets[index].clone();
-            if set.log_posterior() < best - NEGLIGIBLE {
-                break;
-            }
-            let is_relevant = self.are_relevant(search, &set, &mut asked)?;
-            asked.relevant[index] = Some(is_relevant);
-            if is_relevant {
-                best = best.max(set.log_posterior());
-            }
+            let smaller = self.without_irrelevant(search, &set, &mut asked)?;
+            asked.note(index, smaller.unwrap_or(index));
         }
         Ok(asked)
     }
@@ -219,13 +214,13 @@ impl Relevance {
             .sum()
     }
 
-    /// Whether all effects of a set are relevant. Of an irrelevant one, the set without it is asked next.
-    fn are_relevant(
+    /// Where the set is that lacks an irrelevant effect of a set, or has a special case of it; none where all are relevant.
+    fn without_irrelevant(
         &self,
         search: &Search<'_>,
         set: &CandidateModel,
         asked: &mut Asked,
-    ) -> Result<bool, EstimateError> {
+    ) -> Result<Option<usize>, EstimateError> {
         // What is fitted already tells soonest.
         let is_known = |i: &usize| asked.places.contains_key(&set.key_without(*i));
         let (mut order, unknown): (Vec<usize>, Vec<usize>) =
@@ -237,24 +232,23 @@ impl Relevance {
                 true => vec![f64::INFINITY; self.motion.len()],
                 false => moved(search, set, i)?,
             };
-            let smaller = match asked.places.get(&set.key_without(i)) {
-                Some(&known) => asked.sets[known].clone(),
-                None => search.fit(&remove(&set.fit.estimate, i, search.nominal))?,
+            let place = match asked.places.get(&set.key_without(i)) {
+                Some(&known) => known,
+                None => asked.place(search.fit(&remove(&set.fit.estimate, i, search.nominal))?),
             };
-            let mut is_relevant = self.is_relevant(search, set, &smaller, &moved);
-            asked.extend(vec![smaller]);
-            if is_relevant {
-                // A law beyond a special case of it is held to the same.
-                let special = search.shrink(set, i);
-                let mut each = special.iter();
-                is_relevant = each.all(|other| self.is_relevant(search, set, other, &moved));
-                asked.extend(special);
+            if !self.is_relevant(search, set, &asked.sets[place], &moved) {
+                return Ok(Some(place));
             }
-            if !is_relevant {
-                return Ok(false);
+            // A law beyond a special case of it is held to the same.
+            for special in search.shrink(set, i) {
+                let is_relevant = self.is_relevant(search, set, &special, &moved);
+                let place = asked.place(special);
+                if !is_relevant {
+                    return Ok(Some(place));
+                }
             }
         }
-        Ok(true)
+        Ok(None)
     }
 }
 
@@ -321,8 +315,9 @@ fn effect(
     let own_name = name(own);
     let key = best.key();
     let mut rivals: Vec<Rival> = vec![];
-    for set in &posterior.sets[1..] {
-        let log_odds = set.log_posterior() - best.log_posterior();
+    let answers = posterior.sets.iter().zip(&posterior.probabilities);
+    for (set, probability) in answers.skip(1) {
+        let log_odds = (probability / posterior.probabilities[0]).ln();
         if log_odds < -INDISTINGUISHABLE || set.key().contains(&own_name) {
             continue;
         }

@@ -12,8 +12,8 @@
 //! A stage is left out where the best set leaves nothing but noise, or, if it is one of wrong parameters, less than an effect that is worth
 //! a name would move, and no candidate promises to be worth a name: its score pays for its prior and for the values that it
 //! adjusts, it moves an output by enough, and a fit keeps it. So it is where the best set leaves no share that counts of what wrong
-//! parameters leave alone, and holds as many effects as any or, once effects were tried from many values, nothing promises. What promises
-//! beside a best set that leaves nothing but noise is added to it before the next stage (`ending.rs`).
+//! parameters leave alone, and holds as many effects as any or, once effects were tried from many values, nothing promises; but for a set
+//! of more effects than were tried together yet, which may stand in for fewer. What promises beside a best set that leaves nothing but noise is added to it before the next stage (`ending.rs`).
 
 use std::collections::BTreeSet;
 
@@ -231,7 +231,7 @@ impl<'a> Search<'a> {
     /// [`EstimateError`] when the model cannot be propagated.
     pub fn run(&mut self, base: &CandidateModel) -> Result<Vec<CandidateModel>, EstimateError> {
         let mut pool = vec![base.clone()];
-        if self.is_settled(&pool)? {
+        if self.is_settled(&pool, 0)? {
             return Ok(pool);
         }
         self.tell(Stage::NominalParameters);
@@ -241,14 +241,14 @@ impl<'a> Search<'a> {
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
         rank(&mut pool);
-        let is_settled = self.is_settled(&pool)?;
+        let is_settled = self.is_settled(&pool, 0)?;
         if is_settled || !self.leaves_noise_by_its_colour(&pool) {
             return self.run_on((base, &linear), recalibrated, pool, is_settled);
         }
         pool = self.recolour(&pool);
         let base = &self.fit(&base.fit.estimate)?;
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
-        let is_settled = self.is_settled(&pool)?;
+        let is_settled = self.is_settled(&pool, 0)?;
         self.run_on((base, &linear), recalibrated, pool, is_settled)
     }
 
@@ -273,14 +273,14 @@ impl<'a> Search<'a> {
             pool.extend(grown);
             rank(&mut pool);
         }
-        let mut is_settled = self.settle(&mut pool)?;
+        let mut is_settled = self.settle(&mut pool, 1)?;
         if let Some(recalibrated) = recalibrated
             && !is_settled
         {
             self.tell(Stage::BesideParameters);
             pool.extend(self.beside_recalibrated(&recalibrated)?);
             rank(&mut pool);
-            is_settled = self.settle(&mut pool)?;
+            is_settled = self.settle(&mut pool, 1)?;
         }
         let mut front: Vec<CandidateModel> = pool.clone();
         front.retain(|set| !set.effects().is_empty() && !self.is_full(set));
@@ -300,14 +300,14 @@ impl<'a> Search<'a> {
             }
             pool.extend(next.iter().cloned());
             rank(&mut pool);
-            is_settled = self.settle(&mut pool)?;
+            is_settled = self.settle(&mut pool, size + 2)?;
             if size == 0 && !is_settled {
                 self.tell(Stage::PairsFromManyValues);
                 let far = self.extend_from_many_values(&best)?;
                 next.extend(far.iter().cloned());
                 pool.extend(far);
                 rank(&mut pool);
-                is_settled = self.settle(&mut pool)?;
+                is_settled = self.settle(&mut pool, size + 2)?;
             }
             rank(&mut next);
             front = next;
@@ -342,7 +342,7 @@ impl<'a> Search<'a> {
                 return Ok(());
             }
             self.tell(Stage::Changes);
-            let is_settled = self.settle(pool)?;
+            let is_settled = self.settle(pool, MOST_EFFECTS)?;
             let Some(best) = pool.first().cloned() else {
                 return Ok(());
             };

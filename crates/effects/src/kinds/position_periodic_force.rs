@@ -35,8 +35,8 @@ impl ForceLaw for Law {
     }
 }
 
-/// Periods within the range of the motion.
-const FEWEST: f64 = 0.7;
+/// Periods within the range of the motion: what is not seen whole does not repeat, and is any smooth curve.
+const FEWEST: f64 = 1.0;
 const MOST: f64 = 30.0;
 /// From one start to the next: a sixth of the periods, and at the most half a period, by which two waves part over the
 /// range as far as a fit can follow.
@@ -44,8 +44,6 @@ const STEP: f64 = 1.17;
 const MOST_STEP: f64 = 0.5;
 /// Number of usual ones.
 const USUAL: i32 = 22;
-/// Longest period over the travel: a smaller part of one is any smooth curve.
-const LONGEST: f64 = 1.5;
 
 /// Small forces with so many periods over the range of the motion.
 fn of_periods(scale: &SiteScale, counts: impl Iterator<Item = f64>) -> Vec<Vec<f64>> {
@@ -100,7 +98,7 @@ impl Effect for PositionPeriodicForce {
         )
     }
 
-    /// From less than one period to twenty, each a sixth more.
+    /// From one period to thirty, each a sixth more.
     fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         of_periods(scale, (0..USUAL).map(|k| FEWEST * STEP.powi(k)))
     }
@@ -123,14 +121,14 @@ impl Effect for PositionPeriodicForce {
 
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
         let [low, high] = scale.displacement_range_m;
-        values[2] <= LONGEST * (high - low)
+        FEWEST * values[2] <= high - low
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {
         &[
             (
                 "cubic_stiffness",
-                "a period longer than the travel bends the force like a soft spring",
+                "a period about as long as the travel bends the force like a soft spring",
             ),
             (
                 "harmonic_force",
