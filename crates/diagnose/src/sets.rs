@@ -15,7 +15,7 @@ pub struct FittedSet {
     pub log_marginal_likelihood: f64,
     /// ln p before any data.
     pub log_prior: f64,
-    /// p after the data, among the sets.
+    /// p after the data, with that of the sets that stand for it: they hold effects besides that are not worth a name.
     pub probability: f64,
     /// Minus the log-likelihood at the estimate, but for a constant that all sets share.
     pub misfit: f64,

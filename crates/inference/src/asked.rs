@@ -13,8 +13,9 @@ use crate::search::Search;
 #[derive(Default)]
 pub(crate) struct Asked {
     pub(crate) sets: Vec<CandidateModel>,
-    /// Log posterior of each, with that of all that stand for it; minus infinity of those that stand for another.
+    /// Log posterior of each, with that of all that stand for it.
     weights: Vec<f64>,
+    /// Where the set is that each stands for.
     stands_for: Vec<Option<usize>>,
     /// Where each set is, by its key.
     pub(crate) places: BTreeMap<Vec<String>, usize>,
@@ -56,8 +57,7 @@ impl Asked {
 
     /// Notes that a set stands for another, or for itself.
     pub(crate) fn note(&mut self, index: usize, answer: usize) {
-        // What the other stands for, if it was asked before. Parts are smaller: it is not the set itself, but for laws that turn
-        // into each other.
+        // What the other stands for, if it was asked before. Of laws that turn into each other it may be the set itself.
         let mut end = answer;
         while let Some(next) = self.stands_for[end].filter(|next| *next != end) {
             end = next;
@@ -65,7 +65,6 @@ impl Asked {
         self.stands_for[index] = Some(end);
         if end != index {
             self.weights[end] = log_sum(self.weights[end], self.weights[index]);
-            self.weights[index] = f64::NEG_INFINITY;
         }
     }
 

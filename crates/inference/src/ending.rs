@@ -10,8 +10,8 @@ use crate::noise_model::{NOISE_KNOWN, noise_variance, rounding_variance, stepped
 use crate::search::{ADDED, Search, counts};
 
 impl Search<'_> {
-    /// Whether the best set is at its end, or holds as many effects as any and leaves no share that counts. One of more effects than were
-    /// tried together, beside wrong nominal parameters, may stand in for fewer that were not found alone.
+    /// Whether the best set is at its end, or holds as many effects as any and leaves no share that counts. So many effects were `tried`
+    /// together.
     pub(crate) fn is_settled(
         &self,
         pool: &[CandidateModel],
@@ -20,8 +20,7 @@ impl Search<'_> {
         let Some(best) = pool.first() else {
             return Ok(false);
         };
-        let is_full = self.is_full(best) && counts(best)[0] <= tried;
-        if self.is_spent() || (is_full && self.leaves_no_share(best, pool)) {
+        if self.is_spent() || (self.is_full(best) && self.leaves_no_share(best, pool, tried)) {
             return Ok(true);
         }
         self.is_at_its_end(best)
@@ -42,8 +41,7 @@ impl Search<'_> {
                 return Ok(false);
             };
             if !self.leaves_noise(&best, &self.noise_of(&best)) {
-                let is_tried = counts(&best)[0] <= tried;
-                let leaves_little = is_tried && self.leaves_no_share(&best, pool);
+                let leaves_little = self.leaves_no_share(&best, pool, tried);
                 return Ok(leaves_little && !self.is_promising(&best)?);
             }
             if !self.is_full(&best) {
@@ -58,8 +56,12 @@ impl Search<'_> {
         Ok(true)
     }
 
-    /// Whether a set leaves no share that counts of what wrong nominal parameters leave alone, so far as these were fitted.
-    fn leaves_no_share(&self, set: &CandidateModel, pool: &[CandidateModel]) -> bool {
+    /// Whether a set leaves no share that counts of what wrong nominal parameters leave alone, so far as these were fitted. Of more
+    /// effects than were tried together, beside wrong nominal parameters, that is not said: it may stand in for fewer.
+    fn leaves_no_share(&self, set: &CandidateModel, pool: &[CandidateModel], tried: usize) -> bool {
+        if counts(set)[0] > tried {
+            return false;
+        }
         let are_alone = |set: &&CandidateModel| set.effects().iter().all(is_nominal);
         least(pool.iter().filter(are_alone)).is_none_or(|alone| {
             let (left, noise) = (&set.fit.variance, self.noise_of(set));

@@ -13,7 +13,8 @@
 //! a name would move, and no candidate promises to be worth a name: its score pays for its prior and for the values that it
 //! adjusts, it moves an output by enough, and a fit keeps it. So it is where the best set leaves no share that counts of what wrong
 //! parameters leave alone, and holds as many effects as any or, once effects were tried from many values, nothing promises; but for a set
-//! of more effects than were tried together yet, which may stand in for fewer. What promises beside a best set that leaves nothing but noise is added to it before the next stage (`ending.rs`).
+//! of more effects than were tried together yet, which may stand in for fewer. What promises beside a best set that leaves nothing but
+//! noise is added to it before the next stage (`ending.rs`).
 
 use std::collections::BTreeSet;
 

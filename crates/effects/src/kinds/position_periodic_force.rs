@@ -15,7 +15,7 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// F = a sin(2π d / p) + b cos(2π d / p)
 /// ```
 /// Where nothing shows at which d a record begins, a shift of all d turns a and b into each other: b is then what it was at the
-/// start of a fit, and the places at which the records begin say the rest.
+/// start of a fit, and the places at which the records begin say the rest. p is no longer than the travel.
 ///
 /// Reference: \[Otten1997\], cogging of a linear motor.
 pub(crate) struct PositionPeriodicForce;
@@ -98,7 +98,7 @@ impl Effect for PositionPeriodicForce {
         )
     }
 
-    /// From one period to thirty, each a sixth more.
+    /// From one period to 27, each a sixth more.
     fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         of_periods(scale, (0..USUAL).map(|k| FEWEST * STEP.powi(k)))
     }
