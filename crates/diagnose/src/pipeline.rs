@@ -313,6 +313,7 @@ fn read_otherwise(given: &Model, read: &Model) -> Vec<String> {
             BetweenSamples::Smooth => "a smooth curve through the samples",
             BetweenSamples::Linear => "straight lines between the samples (first-order hold)",
             BetweenSamples::Held => "held from sample to sample (zero-order hold)",
+            BetweenSamples::Stepped => "a smooth curve but for its jumps, which come with their samples",
         };
         format!(
             "input \"{}\" goes in jumps and is read as {how}: so the model leaves least of the training records. State \

@@ -79,24 +79,34 @@ fn line(now: f64, next: f64, share: f64) -> f64 {
     now + share * (next - now)
 }
 
-/// A record of the axis by a Runge-Kutta method of fourth order in twenty steps a sample, with Coulomb friction of
-/// `friction`, smoothed within 0.1 mm/s.
+/// A record of the axis that is driven by two levels.
 fn record(number: u64, between: Between, friction: f64) -> Record {
-    const PARTS: usize = 20;
     let mut draw = Draw(number);
     let input = binary(&mut draw);
+    let within = |i: usize, share: f64| between(input[i], input[(i + 1).min(SAMPLES - 1)], share);
+    driven(&format!("{number}.csv"), &within, [1.0, friction], draw)
+}
+
+/// A record of the axis by a Runge-Kutta method of fourth order in twenty steps a sample, driven by `gain` times what the input is
+/// within the interval after a sample, with Coulomb friction of `friction`, smoothed within 0.1 mm/s.
+fn driven(
+    name: &str,
+    within: &dyn Fn(usize, f64) -> f64,
+    [gain, friction]: [f64; 2],
+    mut draw: Draw,
+) -> Record {
+    const PARTS: usize = 20;
     let rate = |u: f64, [x, v]: [f64; 2]| {
         let dry = friction * (v / 1e-4).tanh();
-        [v, (u - DAMPING * v - STIFFNESS * x - dry) / MASS]
+        [v, (gain * u - DAMPING * v - STIFFNESS * x - dry) / MASS]
     };
     let h = STEP_S / PARTS as f64;
     let mut state = [0.0, 0.0];
     let mut output = vec![];
     for i in 0..SAMPLES {
         output.push(state[0]);
-        let next = input[(i + 1).min(SAMPLES - 1)];
         for part in 0..PARTS {
-            let u = |half: f64| between(input[i], next, (part as f64 + half) / PARTS as f64);
+            let u = |half: f64| within(i, (part as f64 + half) / PARTS as f64);
             let along = |state: [f64; 2], rate: [f64; 2], h: f64| {
                 [state[0] + h * rate[0], state[1] + h * rate[1]]
             };
@@ -114,10 +124,10 @@ fn record(number: u64, between: Between, friction: f64) -> Record {
         *value += 0.003 * rms * (draw.next() + draw.next() + draw.next());
     }
     let channels = vec![
-        Channel::new("u", "N", input),
+        Channel::new("u", "N", (0..SAMPLES).map(|i| within(i, 0.0)).collect()),
         Channel::new("x", "m", output),
     ];
-    Record::from_uniform(format!("{number}.csv"), 0.0, STEP_S, channels).unwrap()
+    Record::from_uniform(name, 0.0, STEP_S, channels).unwrap()
 }
 
 fn diagnosed(stated: &str, between: Between, friction: f64) -> Diagnosis {
@@ -167,6 +177,38 @@ fn verify_an_effect_is_found_beside_a_held_input() {
     assert!(told(&diagnosis));
 }
 
+/// A force that is smooth in one record and goes in jumps in the others, and acts with the other sign: read as one smooth curve it
+/// would swing about each jump, read as held it would be late everywhere.
+#[test]
+fn verify_a_sweep_beside_square_waves_is_smooth_between_its_steps() {
+    let turns = |t: f64| std::f64::consts::TAU * (0.5 * t + 0.125 * t * t);
+    let curve = |i: usize, share: f64| 10.0 * turns(STEP_S * (i as f64 + share)).sin();
+    let reversed = [-1.0, 0.0];
+    let sweep = driven("sweep.csv", &curve, reversed, Draw(9));
+    let [square, check] = [1, 2].map(|number| {
+        let mut draw = Draw(number);
+        let input = binary(&mut draw);
+        let within = |i: usize, _: f64| input[i];
+        driven(&format!("{number}.csv"), &within, reversed, draw)
+    });
+    let outcome = diagnose(
+        &Request::new(&model(""), &[sweep, square], &[check]),
+        &|_| {},
+    );
+    let diagnosis = outcome.unwrap().diagnosis;
+    let [effect] = &diagnosis.verdict.effects[..] else {
+        panic!("{:?}", diagnosis.verdict);
+    };
+    assert_eq!(effect.kind, "input_gain");
+    assert!(
+        (effect.parameters[0].value + 1.0).abs() < 0.03,
+        "{effect:?}"
+    );
+    assert!(diagnosis.verdict.complete, "{:?}", diagnosis.verdict);
+    let mut notes = diagnosis.notes.iter();
+    assert!(notes.any(|note| note.contains("a smooth curve but for its jumps")));
+}
+
 /// What the model file states is not asked again.
 #[test]
 fn verify_the_model_file_decides_what_an_input_does_between_samples() {
@@ -182,6 +224,7 @@ fn verify_the_model_file_decides_what_an_input_does_between_samples() {
         ("smooth", BetweenSamples::Smooth),
         ("linear", BetweenSamples::Linear),
         ("held", BetweenSamples::Held),
+        ("stepped", BetweenSamples::Stepped),
     ];
     for (name, wanted) in stated {
         assert_eq!(read(&format!("between_samples = \"{name}\"")), Some(wanted));

@@ -109,7 +109,8 @@ fn best_fit(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
 }
 
 /// Whether motions that begin alike may part: then the objective of an initial state has many valleys.
-fn may_part(effects: &[Placed]) -> bool {
+#[must_use]
+pub fn may_part(effects: &[Placed]) -> bool {
     let mut effects = effects.iter();
     effects.any(|placed| placed.effect.family() == Family::Force)
 }

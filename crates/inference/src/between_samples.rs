@@ -2,13 +2,14 @@
 //!
 //! A record holds samples; a machine is driven by what is between them, too. What was measured follows a smooth curve; what a
 //! converter puts out keeps each value until the next sample (zero-order hold), which a plant sees half an interval later; what was
-//! computed may go in straight lines (first-order hold). Where the model file states none and a signal goes in jumps, the
+//! computed may go in straight lines (first-order hold). A signal may be smooth in one record and a square wave in the next: it is
+//! stepped, a smooth curve with jumps. Where the model file states none and a signal goes in jumps in a record, the
 //! records decide: the likelihood of the model with re-estimated parameters under each, equally likely before any data.
 
 use simgap_effects::Placed;
 use simgap_estimate::{Cancel, EstimateError, FitOptions, Problem, Start, fit_initial_states};
 use simgap_model::{BetweenSamples, InputKind, Model};
-use simgap_simulate::Run;
+use simgap_simulate::{Run, lone_changes};
 
 use crate::{RECALIBRATION_STD, recalibrate};
 
@@ -21,6 +22,7 @@ const IN_JUMPS: f64 = 0.5;
 /// [`EstimateError`] when the model cannot be propagated, or the work was cancelled.
 pub fn read_inputs(model: &Model, runs: &[Run], cancel: &Cancel) -> Result<Model, EstimateError> {
     let mut read = model.clone();
+    let in_jumps = |i: usize| runs.iter().map(move |run| goes_in_jumps(&run.inputs[i]));
     let asked: Vec<usize> = (0..model.inputs.len())
         .filter(|&i| {
             let input = &model.inputs[i];
@@ -28,7 +30,7 @@ pub fn read_inputs(model: &Model, runs: &[Run], cancel: &Cancel) -> Result<Model
             let is_open = input.between_samples.is_none()
                 && input.may_jump()
                 && input.kind != InputKind::Signal;
-            is_open && runs.iter().all(|run| goes_in_jumps(&run.inputs[i]))
+            is_open && in_jumps(i).any(|is_in_jumps| is_in_jumps)
         })
         .collect();
     if asked.is_empty() {
@@ -36,7 +38,12 @@ pub fn read_inputs(model: &Model, runs: &[Run], cancel: &Cancel) -> Result<Model
     }
     let mut least = misfit(&read, runs, cancel)?;
     for i in asked {
-        for reading in [BetweenSamples::Linear, BetweenSamples::Held] {
+        let mut readings = vec![BetweenSamples::Linear, BetweenSamples::Held];
+        // What goes in jumps in every record is held between them.
+        if !in_jumps(i).all(|is_in_jumps| is_in_jumps) {
+            readings.push(BetweenSamples::Stepped);
+        }
+        for reading in readings {
             let before = read.inputs[i].between_samples.replace(reading);
             let left = misfit(&read, runs, cancel)?;
             match left < least {
@@ -77,17 +84,9 @@ fn misfit(model: &Model, runs: &[Run], cancel: &Cancel) -> Result<f64, EstimateE
 
 /// Whether most of the way that a signal goes lies in changes that stand alone: it pauses before and after them.
 fn goes_in_jumps(signal: &[f64]) -> bool {
-    let steps: Vec<f64> = signal
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs())
-        .collect();
-    let pauses = |k: Option<usize>| k.and_then(|k| steps.get(k)).is_none_or(|step| *step == 0.0);
-    let alone = steps
-        .iter()
-        .enumerate()
-        .filter(|(k, _)| pauses(k.checked_sub(1)) && pauses(Some(k + 1)));
-    let in_jumps: f64 = alone.map(|(_, step)| step).sum();
-    in_jumps > IN_JUMPS * steps.iter().sum::<f64>()
+    let way = |changes: &mut dyn Iterator<Item = f64>| changes.map(f64::abs).sum::<f64>();
+    let all = way(&mut signal.windows(2).map(|pair| pair[1] - pair[0]));
+    way(&mut lone_changes(signal).into_iter()) > IN_JUMPS * all
 }
 
 #[cfg(test)]

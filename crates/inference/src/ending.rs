@@ -3,7 +3,7 @@
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, fit};
 
-use crate::candidate_model::{CandidateModel, is_nominal, least, rank};
+use crate::candidate_model::{CandidateModel, is_bent, is_nominal, least, rank};
 use crate::gap::{Gap, RELEVANT_SHARE};
 use crate::motion;
 use crate::noise_model::{NOISE_KNOWN, noise_variance, rounding_variance, stepped};
@@ -74,11 +74,10 @@ impl Search<'_> {
     /// Whether nothing that is added to a set could make it likelier: it leaves nothing but noise or, of wrong parameters, less than
     /// what is worth a name would move, and no candidate promises to be worth one.
     pub(crate) fn is_at_its_end(&self, set: &CandidateModel) -> Result<bool, EstimateError> {
-        let left = set.fit.variance.iter().zip(self.unexplainable(set));
-        if left
-            .into_iter()
-            .all(|(left, floor)| *left < NOISE_KNOWN * floor)
-        {
+        let mut left = set.fit.variance.iter().zip(self.unexplainable(set));
+        let explains_all = left.all(|(left, floor)| *left < NOISE_KNOWN * floor);
+        // Nominal parameters further off than the model states are likelier wrong.
+        if explains_all && !is_bent(set) {
             return Ok(true);
         }
         let noise = self.noise_of(set);

@@ -12,6 +12,8 @@ pub enum BetweenSamples {
     Linear,
     /// It keeps the value of a sample until the next one, as what a converter puts out does (zero-order hold).
     Held,
+    /// It follows a smooth curve, but where a value stands and changes at once: there it is kept until the next sample.
+    Stepped,
 }
 
 impl BetweenSamples {
@@ -22,6 +24,7 @@ impl BetweenSamples {
             BetweenSamples::Smooth => "smooth",
             BetweenSamples::Linear => "linear",
             BetweenSamples::Held => "held",
+            BetweenSamples::Stepped => "stepped",
         }
     }
 }

@@ -62,6 +62,33 @@ pub(crate) struct Coupling {
     pub(crate) coefficient: f64,
 }
 
+/// Changes of a signal from each sample to the next that stand alone: it pauses before and after them. Zero elsewhere.
+#[must_use]
+pub fn lone_changes(signal: &[f64]) -> Vec<f64> {
+    let changes: Vec<f64> = signal.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let pauses = |k: Option<usize>| k.and_then(|k| changes.get(k)).is_none_or(|c| *c == 0.0);
+    let each = changes.iter().enumerate();
+    let lone = each.map(
+        |(k, change)| match pauses(k.checked_sub(1)) && pauses(Some(k + 1)) {
+            true => *change,
+            false => 0.0,
+        },
+    );
+    lone.collect()
+}
+
+/// A signal in two parts: the steps of which it holds the [`lone_changes`], and what is left without them.
+pub(crate) fn steps_apart(signal: &[f64]) -> [Vec<f64>; 2] {
+    let changes = [0.0].into_iter().chain(lone_changes(signal));
+    let steps = changes.take(signal.len()).scan(0.0, |level, change| {
+        *level += change;
+        Some(*level)
+    });
+    let steps: Vec<f64> = steps.collect();
+    let rest = signal.iter().zip(&steps).map(|(value, step)| value - step);
+    [rest.collect(), steps]
+}
+
 /// Replaces sampled forces on n masses by those whose straight lines push as the smooth curve through the
 /// samples does; returns what was taken away, sample by sample, for each mass where it is not zero throughout.
 ///
@@ -203,7 +230,7 @@ pub(crate) fn derivative(signal: &[f64], step: f64) -> Vec<f64> {
 mod tests {
     use std::f64::consts::TAU;
 
-    use super::{add_held, derivative, straighten};
+    use super::{add_held, derivative, lone_changes, steps_apart, straighten};
 
     /// Amplitude of the fundamental of straight lines through a sine of so many samples a cycle.
     fn fundamental(per_cycle: f64, straightened: bool) -> f64 {
@@ -246,6 +273,38 @@ mod tests {
         assert!(off(10.0).abs() < 5e-4, "{}", off(10.0));
         let ratio = off(15.0) / off(30.0);
         assert!((ratio / 64.0 - 1.0).abs() < 0.1, "{ratio}");
+    }
+
+    /// A sine with a step of 3 in a pause, and two changes in a row, which are no step.
+    #[test]
+    fn verify_steps_are_what_changes_at_once() {
+        let mut signal: Vec<f64> = (0..40).map(|i| (0.3 * f64::from(i)).sin()).collect();
+        let pause = signal[39];
+        signal.extend([
+            pause,
+            pause,
+            pause + 3.0,
+            pause + 3.0,
+            pause + 4.0,
+            pause + 5.0,
+        ]);
+        signal.extend([pause + 5.0; 3]);
+        let lone: Vec<(usize, f64)> = lone_changes(&signal)
+            .into_iter()
+            .enumerate()
+            .filter(|(_, change)| *change != 0.0)
+            .collect();
+        assert_eq!(lone.len(), 1);
+        assert!(lone[0].0 == 41 && (lone[0].1 - 3.0).abs() < 1e-15);
+        let [rest, steps] = steps_apart(&signal);
+        for (i, (rest, step)) in rest.iter().zip(&steps).enumerate() {
+            assert!((rest + step - signal[i]).abs() < 1e-15);
+            assert!((step - if i < 42 { 0.0 } else { 3.0 }).abs() < 1e-15);
+        }
+        for signal in [vec![], vec![2.0]] {
+            let [rest, steps] = steps_apart(&signal);
+            assert_eq!((rest, steps), (signal.clone(), vec![0.0; signal.len()]));
+        }
     }
 
     #[test]

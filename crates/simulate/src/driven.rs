@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use simgap_effects::Sampled;
 use simgap_model::{BetweenSamples, Input, InputKind, Node};
 
-use crate::drive::{Coupling, Drive, DriveKey, derivative, straighten};
+use crate::drive::{Coupling, Drive, DriveKey, derivative, steps_apart, straighten};
 use crate::{Run, SimulateError, Simulator};
 
 impl Simulator {
@@ -64,12 +64,26 @@ impl Simulator {
             .filter(|&i| self.model.inputs[i].kind == InputKind::Displacement)
             .collect();
         drive.base_count = base_inputs.len();
+        let parts: Vec<Vec<(BetweenSamples, Cow<'_, [f64]>)>> = inputs
+            .iter()
+            .zip(&key.between_samples)
+            .map(|(signal, between)| match between {
+                BetweenSamples::Stepped => {
+                    let [rest, steps] = steps_apart(signal);
+                    vec![
+                        (BetweenSamples::Smooth, rest.into()),
+                        (BetweenSamples::Held, steps.into()),
+                    ]
+                }
+                between => vec![(*between, Cow::Borrowed(&**signal))],
+            })
+            .collect();
         let add = |drive: &mut Drive, wanted: BetweenSamples| {
-            let inputs = inputs.iter().zip(&key.between_samples);
-            let read = inputs.zip(&key.input_terms);
-            for ((signal, _), terms) in read.filter(|((_, read), _)| **read == wanted) {
-                for &(dof, weight) in terms {
-                    drive.add(wanted, (dof, n), (signal, weight), run.time_step_s);
+            for (parts, terms) in parts.iter().zip(&key.input_terms) {
+                for (_, signal) in parts.iter().filter(|(between, _)| *between == wanted) {
+                    for &(dof, weight) in terms {
+                        drive.add(wanted, (dof, n), (signal, weight), run.time_step_s);
+                    }
                 }
             }
         };

@@ -74,6 +74,7 @@ mod step;
 mod waveform;
 
 pub use batch::{Job, Prediction, predict_all};
+pub use drive::lone_changes;
 pub use error::SimulateError;
 pub use external::ExternalPlant;
 pub use plant::{Plant, PlantError, PlantRun};

@@ -2,6 +2,7 @@
 
 mod add;
 mod grow;
+mod initial_states;
 mod model_reduction;
 mod multiple_shooting;
 mod multistart;

@@ -114,8 +114,8 @@ class Model:
         """Adds what drives the machine, as measured: a ``"force"`` on the mass ``at``, N, the
         ``"displacement"`` of the moving base node ``at``, m, the ``"command"`` of the valve ``at``,
         1, the ``"set_point"`` of the block ``at``, or the ``"signal"`` ``at`` of a simulator. ``gain`` is in model units per unit of the
-        channel; without it the unit must fit. ``between_samples`` is ``"smooth"``, ``"linear"`` or
-        ``"held"``; where it is not stated a diagnosis asks the records if the signal goes in jumps.
+        channel; without it the unit must fit. ``between_samples`` is ``"smooth"``, ``"linear"``,
+        ``"held"`` or ``"stepped"``; where it is not stated a diagnosis asks the records if the signal goes in jumps.
         """
         values = {"channel": channel, "kind": kind, "at": at, "gain": gain}
         values |= {"uncertainty": uncertainty, "between_samples": between_samples}
