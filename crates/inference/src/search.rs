@@ -198,7 +198,7 @@ impl<'a> Search<'a> {
         let again: Vec<&CandidateModel> = again.map(|(_, set)| set).collect();
         let fitted = again
             .par_iter()
-            .filter_map(|set| Some(self.from_better_states(self.fit(&set.fit.estimate).ok()?)));
+            .filter_map(|set| Some(self.with_better_states(self.fit(&set.fit.estimate).ok()?)));
         let mut fitted: Vec<CandidateModel> = fitted.collect();
         rank(&mut fitted);
         fitted

@@ -13,7 +13,7 @@ use crate::search::Search;
 
 impl Search<'_> {
     /// A set, from initial states found anew where these leave less.
-    pub(crate) fn from_better_states(&self, set: CandidateModel) -> CandidateModel {
+    pub(crate) fn with_better_states(&self, set: CandidateModel) -> CandidateModel {
         let anew = self
             .states_anew(&set)
             .and_then(|start| self.fit(&start).ok());
