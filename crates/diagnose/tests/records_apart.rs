@@ -140,3 +140,30 @@ fn verify_what_wanders_with_the_noise_of_an_input_is_told_from_a_spring() {
     let found = spring.parameters[0].value;
     assert!((found / stiffness - 1.0).abs() < 0.1, "{found}");
 }
+
+/// A force at one frequency that the model file knows, with the phase of some other record: every record has one of its own.
+#[test]
+fn verify_the_phase_in_a_model_file_is_that_of_no_record() {
+    let text = "[[effect]]\nkind = \"harmonic_force\"\nmass = \"base\"\namplitude_n = 2.0\n\
+                frequency_hz = 5.3\nphase_rad = 0.0\n";
+    let model = Model::from_toml(&format!("{}{text}", plant().to_toml().unwrap())).unwrap();
+    let of_phase = |number: u64, phase: f64| {
+        let base = Location::Mass("base".into());
+        of_plant(
+            &[placed("harmonic_force", base, &[2.0, 5.3, phase])],
+            number,
+        )
+    };
+    let train = [of_phase(1, 0.4), of_phase(2, 1.9)];
+    let check = [of_phase(3, 3.0)];
+    let outcome = diagnose(&Request::new(&model, &train, &check), &|_| {}).unwrap();
+    let diagnosis = outcome.diagnosis;
+    assert_eq!(
+        diagnosis.verdict.status,
+        Status::None,
+        "{:?}",
+        diagnosis.verdict
+    );
+    let gap = &diagnosis.gap;
+    assert!(gap.recalibrated < 1.1 * gap.noise_floor, "{gap:?}");
+}

@@ -58,7 +58,9 @@ impl<'a> Simulators<'a> {
     ) -> Result<Arc<Simulator>, EstimateError> {
         let values = self.layout.values_in(theta, run).map(f64::to_bits);
         // What a run has of its own depends on when it was taken.
-        let own = (self.layout.own_len() > 0).then_some(run);
+        let mut given = self.problem.given.iter();
+        let differ = self.layout.own_len() > 0 || given.any(|p| !p.of_record.is_empty());
+        let own = differ.then_some(run);
         let key = (own, values.collect());
         if let Some(known) = self.known.get(&key) {
             return Ok(Arc::clone(known));

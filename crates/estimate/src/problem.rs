@@ -105,13 +105,15 @@ impl Problem {
         })
     }
 
-    /// The same model with other runs, the same steps and filters; every sample counts.
+    /// The same model with other runs, the same steps and filters; every sample counts. What effects have of a record's own stays
+    /// with what is cut from that record.
     #[must_use]
     pub fn with_runs(&self, runs: Vec<Run>) -> Problem {
+        let given = self.given.iter().map(|placed| self.in_runs(placed, &runs));
         Problem {
             model: self.model.clone(),
+            given: given.collect(),
             runs,
-            given: self.given.clone(),
             substeps: self.substeps,
             whitening: self.whitening.clone(),
             scales: self.scales.clone(),
@@ -119,6 +121,18 @@ impl Problem {
             plant: self.plant.clone(),
             cancel: self.cancel.clone(),
             effort: self.effort.clone(),
+        }
+    }
+
+    /// An effect of the model with its values in other runs; those of the file where one of them is of another record.
+    fn in_runs(&self, placed: &Placed, runs: &[Run]) -> Placed {
+        let own = runs.iter().map(|run| {
+            let of_record = self.runs.iter().position(|known| known.name == run.name)?;
+            placed.of_record.get(of_record).cloned()
+        });
+        Placed {
+            of_record: own.collect::<Option<_>>().unwrap_or_default(),
+            ..placed.clone()
         }
     }
 
