@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use simgap_effects::{Placed, catalogue_of};
 use simgap_estimate::{
-    Cancel, Fit, FitOptions, Problem, Start, fit, fit_initial_states, take_over_own_values,
+    Cancel, Fit, FitOptions, Problem, Start, fit, fit_initial_states, take_own_values,
 };
 use simgap_inference::noise_model::whitening;
 use simgap_inference::{
@@ -204,7 +204,7 @@ fn prepare<R: Borrow<Record>>(
         train.whitening = filters;
         nominal = fit_initial_states(&train, &[], &options)?;
     }
-    take_over_own_values(&mut train, &nominal);
+    take_own_values(train.given.iter_mut(), &nominal);
     let is_withheld = |kind: &str| request.withheld.iter().any(|known| known == kind);
     let candidates = train.nominal_parameters().into_iter();
     let candidates = candidates.filter(|candidate| !is_withheld(candidate.effect.kind()));

@@ -69,11 +69,10 @@ pub fn fit_initial_states(
     fit_with(&fixed, &whole, weights, true, None)
 }
 
-/// Takes over what effects of the model file have of each record's own, as [`fit_initial_states`] without further effects found it:
-/// the file holds that of the first record of those that it was made from.
-pub fn take_over_own_values(problem: &mut Problem, found: &Fit) {
-    let given = problem.given.iter_mut();
-    let own = given.filter(|placed| !placed.own_places().is_empty());
+/// Gives effects what they have of each record's own, as [`fit_initial_states`] found it: those of the model file and after them those that
+/// it was asked for, in their order.
+pub fn take_own_values<'a>(effects: impl Iterator<Item = &'a mut Placed>, found: &Fit) {
+    let own = effects.filter(|placed| !placed.own_places().is_empty());
     for (placed, found) in own.zip(&found.estimate.effects) {
         placed.of_record.clone_from(&found.of_record);
     }

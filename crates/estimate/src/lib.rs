@@ -99,7 +99,7 @@ pub use curvature::{Coordinate, Curvature};
 pub use effort::Effort;
 pub use fit::{Fit, Interval, NORMAL_95, fit};
 pub use initial::{
-    fit_initial_states, fit_initial_states_from, may_part, simulator_at, take_over_own_values,
+    fit_initial_states, fit_initial_states_from, may_part, simulator_at, take_own_values,
 };
 pub use joint::{JointScore, joint_scores};
 pub use layout::{Owner, Start};

@@ -58,8 +58,7 @@ impl<'a> Simulators<'a> {
     ) -> Result<Arc<Simulator>, EstimateError> {
         let values = self.layout.values_in(theta, run).map(f64::to_bits);
         // What a run has of its own depends on when it was taken.
-        let mut given = self.problem.given.iter();
-        let differ = self.layout.own_len() > 0 || given.any(|p| !p.of_record.is_empty());
+        let differ = self.layout.own_len() > 0 || self.problem.differs_by_run(&[]);
         let own = differ.then_some(run);
         let key = (own, values.collect());
         if let Some(known) = self.known.get(&key) {

@@ -181,6 +181,12 @@ impl Problem {
         Simulator::with_plant(&self.model, &all, self.substeps, self.plant.as_ref())
     }
 
+    /// Whether the nominal model with effects on top differs from run to run.
+    pub(crate) fn differs_by_run(&self, effects: &[Placed]) -> bool {
+        let mut all = self.given.iter().chain(effects);
+        all.any(|placed| !placed.of_record.is_empty())
+    }
+
     /// [`Problem::simulator`] of every run, beside that of `others` if there are any; one for all where no effect has values of a
     /// run's own.
     pub(crate) fn simulators(
@@ -188,8 +194,7 @@ impl Problem {
         effects: &[Placed],
         others: &[Arc<Simulator>],
     ) -> Result<Vec<Arc<Simulator>>, EstimateError> {
-        let mut all = self.given.iter().chain(effects);
-        let differ = all.any(|placed| !placed.of_record.is_empty());
+        let differ = self.differs_by_run(effects);
         let mut simulators: Vec<Arc<Simulator>> = Vec::with_capacity(self.runs.len());
         for run in 0..self.runs.len() {
             let simulator = match simulators.first() {

@@ -6,9 +6,9 @@
 //! ([`simgap_estimate::fit_initial_states`]); where that leaves less, the set is fitted again from there.
 
 use simgap_effects::Placed;
-use simgap_estimate::{Start, fit_initial_states, may_part};
+use simgap_estimate::{Start, fit_initial_states, may_part, take_own_values};
 
-use crate::candidate_model::{CandidateModel, name};
+use crate::candidate_model::CandidateModel;
 use crate::search::Search;
 
 impl Search<'_> {
@@ -30,12 +30,9 @@ impl Search<'_> {
         }
         let found = fit_initial_states(self.problem, &placed, &self.options).ok()?;
         // Phases and hidden states that records have of their own are found with their initial states.
-        for own in &found.estimate.effects {
-            let mut all = start.effects.iter_mut().chain(&mut start.nominal);
-            if let Some(placed) = all.find(|placed| name(placed) == name(own)) {
-                placed.of_record.clone_from(&own.of_record);
-            }
-        }
+        let mut given = self.problem.given.clone();
+        let of_set = start.effects.iter_mut().chain(&mut start.nominal);
+        take_own_values(given.iter_mut().chain(of_set), &found);
         start.initial = found.estimate.initial;
         (found.misfit < set.fit.misfit - self.options.converged).then_some(start)
     }
