@@ -55,6 +55,8 @@ pub struct Fit {
     pub discrepancy: Vec<Signals>,
     /// Steps taken.
     pub iterations: usize,
+    /// Whether no further step would have gained enough, so that it was not ended by the limit of steps.
+    pub is_finished: bool,
 }
 
 /// Two-sided 95 % point of the normal distribution.
@@ -121,8 +123,8 @@ pub(crate) fn fit_with(
     // Whether every sensitivity belongs to this point.
     let mut exact = known.is_none() && !weights.keep_nuisance;
     let mut damping = LEAST_DAMPING;
-    let mut iterations = 0;
-    while iterations < weights.most_steps {
+    let (mut iterations, mut is_finished) = (0, false);
+    while !is_finished && iterations < weights.most_steps {
         let here = (theta.as_slice(), objective);
         let quadratic = search.quadratic(&theta, &at, &mut grams);
         let straight = search.straight(here, &quadratic, damping, along);
@@ -145,7 +147,8 @@ pub(crate) fn fit_with(
                 let all = bent.into_iter().chain(straight);
                 let least = all.min_by(|a, b| a.0.objective.total_cmp(&b.0.objective));
                 let Some((next, used)) = least else {
-                    break;
+                    is_finished = true;
+                    continue;
                 };
                 damping = used;
                 (next, false)
@@ -164,7 +167,7 @@ pub(crate) fn fit_with(
         if gain >= weights.converged || (exact && is_short) {
             exact = !keep;
         } else if exact {
-            break;
+            is_finished = true;
         } else {
             // A small gain along kept sensitivities does not say that there is no larger one.
             at = fresh(at, &theta)?;
@@ -172,14 +175,15 @@ pub(crate) fn fit_with(
         }
     }
     let last = search.quadratic(&theta, &at, &mut grams);
-    Ok(finish(&search, (&theta, objective), (at, last), iterations))
+    let ended = (iterations, is_finished);
+    Ok(finish(&search, (&theta, objective), (at, last), ended))
 }
 
 fn finish(
     Line { layout, merit, .. }: &Line<'_>,
     (theta, objective): (&[f64], f64),
     (at, last): (Linearised, Quadratic),
-    iterations: usize,
+    (iterations, is_finished): (usize, bool),
 ) -> Fit {
     let all: Vec<usize> = (0..layout.len()).collect();
     let curvature = Curvature::of(layout, theta, &last.hessian);
@@ -229,5 +233,6 @@ fn finish(
         curvature,
         discrepancy: at.discrepancy,
         iterations,
+        is_finished,
     }
 }

@@ -103,6 +103,7 @@ pub use initial::{
 };
 pub use joint::{JointScore, joint_scores};
 pub use layout::{Owner, Start};
+pub use merit::misfit;
 pub use outright::score_outright;
 pub use problem::{FitOptions, Problem};
 pub use score::{Score, score, score_shapes};

@@ -17,6 +17,13 @@ pub(crate) struct Merit<'a> {
     filled: Vec<f64>,
 }
 
+/// [`Fit::misfit`](crate::Fit::misfit) of a model that leaves these mean squares of the channels (squares of their units), under other
+/// options than it was fitted with.
+#[must_use]
+pub fn misfit(problem: &Problem, variance: &[f64], options: &FitOptions) -> f64 {
+    Merit::new(problem, options).misfit(variance)
+}
+
 impl<'a> Merit<'a> {
     pub(crate) fn new(problem: &'a Problem, weights: &FitOptions) -> Merit<'a> {
         let std = problem.output_std();
@@ -52,14 +59,17 @@ impl<'a> Merit<'a> {
     ) -> (f64, Vec<f64>) {
         let reach = reach(self.problem, layout, theta);
         let variance = self.variance(discrepancy, &reach);
-        let fit: f64 = variance
-            .iter()
-            .zip(&self.floor)
+        let value = self.misfit(&variance) + self.prior(layout, theta);
+        (if value.is_nan() { f64::INFINITY } else { value }, variance)
+    }
+
+    /// The first sum of (1).
+    fn misfit(&self, variance: &[f64]) -> f64 {
+        let channels = variance.iter().zip(&self.floor);
+        channels
             .zip(self.effective_share.iter().zip(&self.filled))
             .map(|((v, floor), (rho, filled))| 0.5 * rho * (self.count - filled) * (v + floor).ln())
-            .sum();
-        let value = fit + self.prior(layout, theta);
-        (if value.is_nan() { f64::INFINITY } else { value }, variance)
+            .sum()
     }
 
     /// The second sum of (1).

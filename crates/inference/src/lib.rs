@@ -27,6 +27,7 @@ mod motion;
 pub mod noise_model;
 mod other;
 mod proposals;
+mod recolour;
 mod search;
 mod shapley;
 mod stage;

@@ -197,6 +197,7 @@ mod tests {
             },
             discrepancy: vec![],
             iterations: 0,
+            is_finished: true,
         }
     }
 

@@ -24,7 +24,7 @@ use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
 };
 
-use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, least, name, rank};
+use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
 use crate::extended::Extended;
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
@@ -34,9 +34,7 @@ use crate::stage::Stage;
 /// Sets of each size that the next size starts from.
 const SURVIVORS: [usize; 2] = [5, 3];
 /// Candidates fitted on top of each survivor, by score; the first entry is for single effects.
-const FITTED: [usize; 3] = [18, 6, 4];
-/// Sets that are fitted again under another noise model.
-const REFITTED: usize = 16;
+pub(crate) const FITTED: [usize; 3] = [18, 6, 4];
 /// Sets that are extended in the end: the best one may be a stand-in for a larger set that holds the next.
 const LEADING: usize = 3;
 /// Candidates fitted beside each of them; in the place of one of its effects as many as beside a single one.
@@ -96,6 +94,10 @@ pub struct Search<'a> {
     /// When to stop.
     pub budget: Budget<'a>,
     pub(crate) extended: Extended,
+    /// Sets beside which nothing promises.
+    pub(crate) unpromising: Extended,
+    /// The set by the colour of which sets are fitted; none at first.
+    pub(crate) coloured_by: Option<Vec<String>>,
 }
 
 impl<'a> Search<'a> {
@@ -115,6 +117,8 @@ impl<'a> Search<'a> {
             nominal: NominalPrior::Wrong,
             budget,
             extended: Extended::default(),
+            unpromising: Extended::default(),
+            coloured_by: None,
         }
     }
 
@@ -131,6 +135,8 @@ impl<'a> Search<'a> {
             nominal: NominalPrior::Stated(stated_std),
             budget: self.budget,
             extended: Extended::default(),
+            unpromising: Extended::default(),
+            coloured_by: None,
         }
     }
 
@@ -178,32 +184,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The sets of a ranked pool, fitted again with the colour of what the set leaves that leaves least: the best of them, and of each
-    /// effect the best sets of every size that hold it.
-    pub fn recolour(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
-        if let Some(least) = least(pool) {
-            self.noise = self.noise.with_colour_of(&least.fit);
-        }
-        self.options = self.noise.search_options();
-        self.extended = Extended::default();
-        let mut seen = BTreeSet::new();
-        let again = pool.iter().enumerate().filter(|(i, set)| {
-            let size = set.effects().len();
-            let names: Vec<String> = set.effects().iter().map(name).collect();
-            let new = names
-                .into_iter()
-                .filter(|name| seen.insert((size, name.clone())));
-            new.count() > 0 || size == 0 || *i < REFITTED
-        });
-        let again: Vec<&CandidateModel> = again.map(|(_, set)| set).collect();
-        let fitted = again
-            .par_iter()
-            .filter_map(|set| Some(self.with_better_states(self.fit(&set.fit.estimate).ok()?)));
-        let mut fitted: Vec<CandidateModel> = fitted.collect();
-        rank(&mut fitted);
-        fitted
-    }
-
     /// Whether a set holds as many effects as any set.
     pub(crate) fn is_full(&self, set: &CandidateModel) -> bool {
         let [others, parameters] = counts(set);
@@ -246,10 +226,10 @@ impl<'a> Search<'a> {
         if is_settled || !self.leaves_noise_by_its_colour(&pool) {
             return self.run_on((base, &linear), recalibrated, pool, is_settled);
         }
-        pool = self.recolour(&pool);
+        pool = self.recolour(&pool)?;
+        let is_settled = self.is_settled(&pool, 0)?;
         let base = &self.fit(&base.fit.estimate)?;
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
-        let is_settled = self.is_settled(&pool, 0)?;
         self.run_on((base, &linear), recalibrated, pool, is_settled)
     }
 

@@ -13,14 +13,14 @@ use crate::candidate_model::{
     CandidateModel, INDISTINGUISHABLE, add_scored, is_nominal, is_of, name, prior_score, rank,
 };
 use crate::motion;
-use crate::search::Search;
+use crate::search::{FITTED, Search};
 
 /// Steps of a rough fit.
 const ROUGH_STEPS: usize = 3;
 /// Steps of a hidden mass as a multiple: the way of a mode to its frequency, mass and stiffness winds.
 const WINDING: usize = 4;
-/// Sets that are finished of those fitted roughly.
-const FINISHED: usize = 12;
+/// Sets that are finished of more: those of the best starts, and those of the others that are the best once they are fitted roughly.
+const FINISHED: [usize; 2] = [4, 8];
 
 impl Search<'_> {
     /// Every set worth a fit with one more effect than `base`, best first; none where it has been asked before.
@@ -54,7 +54,23 @@ impl Search<'_> {
     /// Whether a further effect promises to make a set likelier, and to be worth a name: its gain is above its prior and what its
     /// values cost that the gain lets them be known by, ½ ln(1 + 2 gain) each, it moves an output by enough, and a fit keeps it.
     pub(crate) fn is_promising(&self, set: &CandidateModel) -> Result<bool, EstimateError> {
+        if self.unpromising.holds(set, 0) {
+            return Ok(false);
+        }
         let linear = linearise_at(self.problem, &set.fit, &self.options)?;
+        let least = set.log_posterior() + INDISTINGUISHABLE;
+        for few in self.worth_a_name(set, &linear).chunks(FITTED[1]) {
+            let fitted = self.fit_steps(few, &linear, self.options.most_steps);
+            if fitted.iter().any(|with| with.log_posterior() > least) {
+                return Ok(true);
+            }
+        }
+        self.unpromising.note(set, 0);
+        Ok(false)
+    }
+
+    /// Starts of a set with one more effect, each of which pays for itself by its score and moves an output by enough.
+    fn worth_a_name(&self, set: &CandidateModel, linear: &Base<'_>) -> Vec<Start> {
         let runs = self.problem.runs.len();
         let pays = |score: &Score| {
             let effect = score.start.effect;
@@ -71,32 +87,27 @@ impl Search<'_> {
             most_steps: 0,
             ..self.options.clone()
         };
-        let mut asked: BTreeSet<String> = BTreeSet::new();
-        for score in self.scores(set, &linear).into_iter().filter(pays) {
-            if asked.contains(&name(&score.start)) {
-                continue;
-            }
+        let mut paying = self.scores(set, linear);
+        paying.retain(pays);
+        let moving = paying.into_par_iter().filter_map(|score| {
             // A wrong nominal parameter is told however little it moves.
             let may_be_small = is_nominal(&score.start);
             let start = add_scored(&set.fit.estimate, score);
             // From a start where the plant runs away nothing is promised.
-            let Ok(with) = linear.fit(&start, &held) else {
-                continue;
-            };
+            let with = linear.fit(&start, &held).ok()?;
             let moved = motion::between(&with, &set.fit);
-            if !may_be_small && motion::is_enough(&moved, &std).all(|enough| !enough) {
-                continue;
-            }
-            asked.extend(start.effects.last().map(name));
-            let fitted = self.fit_steps(&[start], &linear, self.options.most_steps);
-            if fitted
-                .iter()
-                .any(|with| with.log_posterior() > set.log_posterior() + INDISTINGUISHABLE)
-            {
-                return Ok(true);
-            }
-        }
-        Ok(false)
+            let is_worth = may_be_small || motion::is_enough(&moved, &std).any(|enough| enough);
+            is_worth.then_some(start)
+        });
+        let mut starts: Vec<Start> = moving.collect();
+        let mut asked = BTreeSet::new();
+        starts.retain(|start| {
+            start
+                .effects
+                .last()
+                .is_some_and(|last| asked.insert(name(last)))
+        });
+        starts
     }
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.
@@ -132,19 +143,22 @@ impl Search<'_> {
         scores
     }
 
-    /// Fits sets; of the same set from several starts the best stays. Best first.
+    /// Fits sets; of the same set from several starts, the best first, the best stays. Best first.
     ///
-    /// Many sets are first fitted roughly; only the best of them are worth the whole way.
+    /// Many sets are first fitted roughly; only the best of them are worth the whole way. So are those of the best starts, however far
+    /// a few steps take them: an effect that is much of its size off has the longest way.
     pub(crate) fn fit_all(&self, starts: &[Start], base: &Base<'_>) -> Vec<CandidateModel> {
-        if starts.len() <= FINISHED {
+        let [of_starts, of_rough] = FINISHED;
+        if starts.len() <= of_starts + of_rough {
             return self.fit_steps(starts, base, self.options.most_steps);
         }
-        let mut rough = self.fit_steps(starts, base, ROUGH_STEPS);
-        let rest = rough.split_off(rough.len().min(FINISHED));
-        let promising: Vec<Start> = rough.iter().map(|set| set.fit.estimate.clone()).collect();
-        let mut fitted = self.fit_steps(&promising, base, self.options.most_steps);
+        let (leading, others) = starts.split_at(of_starts);
+        let mut fitted = self.fit_steps(leading, base, self.options.most_steps);
+        let rough = self.fit_steps(others, base, ROUGH_STEPS);
+        let promising = rough.iter().take(of_rough);
+        let promising: Vec<Start> = promising.map(|set| set.fit.estimate.clone()).collect();
+        fitted.extend(self.fit_steps(&promising, base, self.options.most_steps));
         fitted.extend(rough);
-        fitted.extend(rest);
         rank(&mut fitted);
         fitted
     }

@@ -233,6 +233,7 @@ mod tests {
             },
             discrepancy: vec![],
             iterations: 0,
+            is_finished: true,
         }
     }
 

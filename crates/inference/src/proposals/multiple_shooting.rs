@@ -117,6 +117,8 @@ impl Search<'_> {
             nominal: self.nominal,
             budget: self.budget,
             extended: Extended::default(),
+            unpromising: Extended::default(),
+            coloured_by: None,
         };
         let parameters = search.candidate_model(parameters);
         let linear = linearise_at(problem, &parameters.fit, &search.options)?;

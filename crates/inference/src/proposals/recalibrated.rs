@@ -50,6 +50,8 @@ impl Search<'_> {
                 .space
                 .of_families(|family| family != Family::NominalParameter),
             extended: Extended::default(),
+            unpromising: Extended::default(),
+            coloured_by: None,
             ..*self
         };
         let linear = linearise_at(self.problem, &recalibrated.fit, &wide.options)?;

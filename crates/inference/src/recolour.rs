@@ -1,0 +1,73 @@
+//! Sets fitted again once the colour of what is left is known.
+//!
+//! Samples count by the colour of what the set leaves that leaves least ([`crate::noise_model`]). Under another colour a set that is as it
+//! was has another misfit, which follows from its discrepancies without a fit. Those are fitted again that are within reach
+//! of the likeliest then.
+
+use rayon::prelude::*;
+use simgap_estimate::{EstimateError, misfit};
+
+use crate::candidate_model::{CandidateModel, least, rank};
+use crate::extended::Extended;
+use crate::search::Search;
+
+/// Log odds beyond which a set is no match for the likeliest, whatever a fit of it still gains.
+const REACH: f64 = 20.0;
+
+impl Search<'_> {
+    /// The sets of a ranked pool that are within reach, and those of wrong parameters alone, fitted again with the colour of what the set
+    /// leaves that leaves least; where none of them is at its end, all single effects too, for a fit may end elsewhere under another
+    /// colour. Where the colour is that of the set of before, it stays as it is, and fits that were finished stay too.
+    ///
+    /// # Errors
+    /// [`EstimateError`] when the model cannot be propagated.
+    pub fn recolour(
+        &mut self,
+        pool: &[CandidateModel],
+    ) -> Result<Vec<CandidateModel>, EstimateError> {
+        let Some(least) = least(pool) else {
+            return Ok(vec![]);
+        };
+        let is_new = self.coloured_by.as_ref() != Some(&least.key());
+        if is_new {
+            self.noise = self.noise.with_colour_of(&least.fit);
+            self.options = self.noise.search_options();
+            self.extended = Extended::default();
+            self.unpromising = Extended::default();
+            self.coloured_by = Some(least.key());
+        }
+        let expected = |set: &CandidateModel| {
+            let misfit = misfit(self.problem, &set.fit.variance, &self.options);
+            set.log_posterior() + set.fit.misfit - misfit
+        };
+        let expected: Vec<f64> = pool.iter().map(expected).collect();
+        let best = expected.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (within_reach, others): (Vec<_>, Vec<_>) = pool
+            .iter()
+            .zip(expected)
+            .partition(|(set, expected)| set.is_of_parameters() || *expected > best - REACH);
+        let of_sets = |sets: Vec<(&'_ CandidateModel, f64)>| -> Vec<CandidateModel> {
+            let sets = sets.into_par_iter();
+            let fitted = sets.filter_map(|(set, _)| self.fit_again(set, is_new));
+            fitted.collect()
+        };
+        let mut fitted = of_sets(within_reach);
+        rank(&mut fitted);
+        if !self.is_settled(&fitted, 0)? {
+            let mut singles = others;
+            singles.retain(|(set, _)| set.effects().len() == 1);
+            fitted.extend(of_sets(singles));
+            rank(&mut fitted);
+        }
+        Ok(fitted)
+    }
+
+    /// A set, fitted again where it has to be, from better initial states where there are any; `None` where the fit fails.
+    fn fit_again(&self, set: &CandidateModel, is_new: bool) -> Option<CandidateModel> {
+        let again = match is_new || !set.fit.is_finished {
+            true => self.fit(&set.fit.estimate).ok()?,
+            false => set.clone(),
+        };
+        Some(self.with_better_states(again))
+    }
+}
