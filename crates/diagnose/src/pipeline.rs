@@ -136,7 +136,7 @@ pub fn diagnose<R: Borrow<Record>>(
     let base = search.fit(&start)?;
     let pool = search.run(&base)?;
     // The colour of what the set leaves that leaves least, once and for all sets.
-    let mut pool = search.recolour(&pool)?;
+    let mut pool = search.recolour(&pool);
     search.refine(&mut pool)?;
     let stopped_early = is_spent();
     // Sets that failed are left out of the pool, those of cancelled work too.

@@ -1,11 +1,11 @@
 //! Sets fitted again once the colour of what is left is known.
 //!
 //! Samples count by the colour of what the set leaves that leaves least ([`crate::noise_model`]). Under another colour a set that is as it
-//! was has another misfit, which follows from its discrepancies without a fit. Those are fitted again that are within reach
-//! of the likeliest then.
+//! was has another misfit, which follows from its discrepancies without a fit. Of sets of several effects those are fitted again that
+//! are within reach of the likeliest then.
 
 use rayon::prelude::*;
-use simgap_estimate::{EstimateError, misfit};
+use simgap_estimate::misfit;
 
 use crate::candidate_model::{CandidateModel, least, rank};
 use crate::extended::Extended;
@@ -15,18 +15,12 @@ use crate::search::Search;
 const REACH: f64 = 20.0;
 
 impl Search<'_> {
-    /// The sets of a ranked pool that are within reach, and those of wrong parameters alone, fitted again with the colour of what the set
-    /// leaves that leaves least; where none of them is at its end, all single effects too, for a fit may end elsewhere under another
-    /// colour. Where the colour is that of the set of before, it stays as it is, and fits that were finished stay too.
-    ///
-    /// # Errors
-    /// [`EstimateError`] when the model cannot be propagated.
-    pub fn recolour(
-        &mut self,
-        pool: &[CandidateModel],
-    ) -> Result<Vec<CandidateModel>, EstimateError> {
+    /// The single effects of a ranked pool, its sets of wrong parameters, and those within reach, fitted again with the colour of what the
+    /// set leaves that leaves least. A fit may end elsewhere under another colour, and single effects are the simplest answers. Where
+    /// the colour is that of the set of before, it stays as it is, and fits that were finished stay too.
+    pub fn recolour(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
         let Some(least) = least(pool) else {
-            return Ok(vec![]);
+            return vec![];
         };
         let is_new = self.coloured_by.as_ref() != Some(&least.key());
         if is_new {
@@ -42,24 +36,14 @@ impl Search<'_> {
         };
         let expected: Vec<f64> = pool.iter().map(expected).collect();
         let best = expected.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let (within_reach, others): (Vec<_>, Vec<_>) = pool
-            .iter()
-            .zip(expected)
-            .partition(|(set, expected)| set.is_of_parameters() || *expected > best - REACH);
-        let of_sets = |sets: Vec<(&'_ CandidateModel, f64)>| -> Vec<CandidateModel> {
-            let sets = sets.into_par_iter();
-            let fitted = sets.filter_map(|(set, _)| self.fit_again(set, is_new));
-            fitted.collect()
-        };
-        let mut fitted = of_sets(within_reach);
+        let again = pool.par_iter().zip(expected).filter(|(set, expected)| {
+            let is_simple = set.effects().len() == 1 || set.is_of_parameters();
+            is_simple || *expected > best - REACH
+        });
+        let fitted = again.filter_map(|(set, _)| self.fit_again(set, is_new));
+        let mut fitted: Vec<CandidateModel> = fitted.collect();
         rank(&mut fitted);
-        if !self.is_settled(&fitted, 0)? {
-            let mut singles = others;
-            singles.retain(|(set, _)| set.effects().len() == 1);
-            fitted.extend(of_sets(singles));
-            rank(&mut fitted);
-        }
-        Ok(fitted)
+        fitted
     }
 
     /// A set, fitted again where it has to be, from better initial states where there are any; `None` where the fit fails.

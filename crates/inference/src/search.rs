@@ -226,7 +226,7 @@ impl<'a> Search<'a> {
         if is_settled || !self.leaves_noise_by_its_colour(&pool) {
             return self.run_on((base, &linear), recalibrated, pool, is_settled);
         }
-        pool = self.recolour(&pool)?;
+        pool = self.recolour(&pool);
         let is_settled = self.is_settled(&pool, 0)?;
         let base = &self.fit(&base.fit.estimate)?;
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;

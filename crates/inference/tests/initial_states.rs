@@ -92,7 +92,7 @@ fn verify_a_body_at_rest_in_its_play_is_found_from_afar() {
             initial: vec![state.to_vec()],
         };
         let first = search.fit(&start).unwrap();
-        let again = search.recolour(std::slice::from_ref(&first)).unwrap();
+        let again = search.recolour(std::slice::from_ref(&first));
         let own = search.fit(&first.fit.estimate).unwrap();
         astray += usize::from(own.fit.estimate.initial[0][0].abs() > 0.1 * PLAY_M);
         let found = &again[0];
