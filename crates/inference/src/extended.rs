@@ -7,6 +7,17 @@ use crate::candidate_model::CandidateModel;
 /// Share of what a fit leaves below which another of the same set leaves notably less.
 const NOTABLY_LESS: f64 = 0.98;
 
+/// What a search knows of itself, under the colour that sets are fitted with.
+#[derive(Default)]
+pub(crate) struct Visited {
+    /// Sets that were extended.
+    pub(crate) extended: Extended,
+    /// Sets beside which nothing promises.
+    pub(crate) unpromising: Extended,
+    /// The set that the colour is of; none at first.
+    pub(crate) coloured_by: Option<Vec<String>>,
+}
+
 /// Which sets have been extended, or changed in another way.
 #[derive(Default)]
 pub(crate) struct Extended(Mutex<Vec<Extension>>);

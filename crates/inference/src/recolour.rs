@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use simgap_estimate::misfit;
 
 use crate::candidate_model::{CandidateModel, least, rank};
-use crate::extended::Extended;
+use crate::extended::Visited;
 use crate::search::Search;
 
 /// Log odds beyond which a set is no match for the likeliest, whatever a fit of it still gains.
@@ -22,13 +22,14 @@ impl Search<'_> {
         let Some(least) = least(pool) else {
             return vec![];
         };
-        let is_new = self.coloured_by.as_ref() != Some(&least.key());
+        let is_new = self.visited.coloured_by.as_ref() != Some(&least.key());
         if is_new {
             self.noise = self.noise.with_colour_of(&least.fit);
             self.options = self.noise.search_options();
-            self.extended = Extended::default();
-            self.unpromising = Extended::default();
-            self.coloured_by = Some(least.key());
+            self.visited = Visited {
+                coloured_by: Some(least.key()),
+                ..Visited::default()
+            };
         }
         let expected = |set: &CandidateModel| {
             let misfit = misfit(self.problem, &set.fit.variance, &self.options);

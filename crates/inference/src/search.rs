@@ -25,7 +25,7 @@ use simgap_estimate::{
 };
 
 use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
-use crate::extended::Extended;
+use crate::extended::{Extended, Visited};
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
 use crate::noise_model::NoiseModel;
@@ -93,11 +93,7 @@ pub struct Search<'a> {
     pub(crate) nominal: NominalPrior,
     /// When to stop.
     pub budget: Budget<'a>,
-    pub(crate) extended: Extended,
-    /// Sets beside which nothing promises.
-    pub(crate) unpromising: Extended,
-    /// The set by the colour of which sets are fitted; none at first.
-    pub(crate) coloured_by: Option<Vec<String>>,
+    pub(crate) visited: Visited,
 }
 
 impl<'a> Search<'a> {
@@ -116,9 +112,7 @@ impl<'a> Search<'a> {
             space,
             nominal: NominalPrior::Wrong,
             budget,
-            extended: Extended::default(),
-            unpromising: Extended::default(),
-            coloured_by: None,
+            visited: Visited::default(),
         }
     }
 
@@ -134,9 +128,7 @@ impl<'a> Search<'a> {
                 .of_families(|family| family == Family::NominalParameter),
             nominal: NominalPrior::Stated(stated_std),
             budget: self.budget,
-            extended: Extended::default(),
-            unpromising: Extended::default(),
-            coloured_by: None,
+            visited: Visited::default(),
         }
     }
 

@@ -29,7 +29,7 @@ impl Search<'_> {
         base: &CandidateModel,
         most: usize,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        if self.extended.holds(base, most) {
+        if self.visited.extended.holds(base, most) {
             return Ok(vec![]);
         }
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
@@ -42,7 +42,7 @@ impl Search<'_> {
         linear: &Base<'_>,
         most: usize,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        self.extended.note(base, most);
+        self.visited.extended.note(base, most);
         let scores = self.scores(base, linear);
         let starts: Vec<Start> = pick(scores, most, base.effects().is_empty())
             .into_iter()
@@ -54,7 +54,7 @@ impl Search<'_> {
     /// Whether a further effect promises to make a set likelier, and to be worth a name: its gain is above its prior and what its
     /// values cost that the gain lets them be known by, ½ ln(1 + 2 gain) each, it moves an output by enough, and a fit keeps it.
     pub(crate) fn is_promising(&self, set: &CandidateModel) -> Result<bool, EstimateError> {
-        if self.unpromising.holds(set, 0) {
+        if self.visited.unpromising.holds(set, 0) {
             return Ok(false);
         }
         let linear = linearise_at(self.problem, &set.fit, &self.options)?;
@@ -65,7 +65,7 @@ impl Search<'_> {
                 return Ok(true);
             }
         }
-        self.unpromising.note(set, 0);
+        self.visited.unpromising.note(set, 0);
         Ok(false)
     }
 

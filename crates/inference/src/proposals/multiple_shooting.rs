@@ -11,7 +11,7 @@ use simgap_estimate::{
 use simgap_model::Location;
 
 use crate::candidate_model::{CandidateModel, add, rank, straight};
-use crate::extended::Extended;
+use crate::extended::Visited;
 use crate::model_space::ModelSpace;
 use crate::search::Search;
 use crate::stretches::{Cut, fit_long};
@@ -116,9 +116,7 @@ impl Search<'_> {
             space: self.laws_in(problem, &parameters)?,
             nominal: self.nominal,
             budget: self.budget,
-            extended: Extended::default(),
-            unpromising: Extended::default(),
-            coloured_by: None,
+            visited: Visited::default(),
         };
         let parameters = search.candidate_model(parameters);
         let linear = linearise_at(problem, &parameters.fit, &search.options)?;

@@ -12,7 +12,7 @@ use simgap_effects::{Family, Placed};
 use simgap_estimate::{EstimateError, FitOptions, Start, linearise_at};
 
 use crate::candidate_model::{CandidateModel, is_nominal, is_of, name, rank, remove};
-use crate::extended::Extended;
+use crate::extended::Visited;
 use crate::proposals::model_reduction::Reduced;
 use crate::search::{MOST_EFFECTS, Search, counts, size};
 use crate::stretches::recalibrate;
@@ -49,9 +49,7 @@ impl Search<'_> {
             space: self
                 .space
                 .of_families(|family| family != Family::NominalParameter),
-            extended: Extended::default(),
-            unpromising: Extended::default(),
-            coloured_by: None,
+            visited: Visited::default(),
             ..*self
         };
         let linear = linearise_at(self.problem, &recalibrated.fit, &wide.options)?;
