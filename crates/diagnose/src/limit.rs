@@ -3,7 +3,7 @@
 use simgap_estimate::Effort;
 
 /// Work after which a search ends of itself: about a minute of one core.
-const MOST_EFFORT: u64 = 10_000_000_000;
+const MOST_EFFORT: u64 = 60_000_000_000;
 
 /// What ends the search with the best answer so far; asked between its stages.
 #[derive(Clone, Copy)]

@@ -212,8 +212,7 @@ impl Problem {
         jobs: &[Job<'_>],
     ) -> Vec<Result<Vec<Vec<f64>>, EstimateError>> {
         for job in jobs {
-            self.effort
-                .add_run(job.run, job.simulator.steps_per_sample());
+            self.effort.add_run(job.run, job.simulator);
         }
         predict_all(jobs)
     }

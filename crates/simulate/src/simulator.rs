@@ -50,6 +50,18 @@ impl Simulator {
         self.substeps
     }
 
+    /// Forces that are solved for in each step, beside the linear part.
+    #[must_use]
+    pub fn force_count(&self) -> usize {
+        self.elements.len()
+    }
+
+    /// Coordinates of the linear part, those of hidden masses among them.
+    #[must_use]
+    pub fn coordinate_count(&self) -> usize {
+        self.model.dof_count()
+    }
+
     /// Puts the effects on the nominal model: first what changes its members and masses, then what adds masses,
     /// then forces and maps. `substeps` is used where nonlinear forces act (see [`crate::substeps_for`]); effects
     /// written in the model file are not added here.
