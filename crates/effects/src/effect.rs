@@ -194,6 +194,12 @@ pub trait Effect: Sync + Send {
         vec![]
     }
 
+    /// Values that the records point at, too far from where the effect vanishes to be seen from there. They are scored by the whole of what
+    /// the effect does.
+    fn pointed_at(&self, _: &SiteScale) -> Vec<Vec<f64>> {
+        vec![]
+    }
+
     /// Kinds that are special cases of this one, whose parameters come first among its own: at one
     /// place only one of them makes sense.
     fn contains(&self) -> &'static [&'static str] {

@@ -42,6 +42,9 @@ pub struct SiteScale {
     /// Strongest lines of what is left of a channel times its signal, and times the rate of its signal, Hz: a carrier of either; at an
     /// input, of what gains and delays leave of every channel times the rate of the input. Zero where there are fewer, and at every other site.
     pub carriers_hz: [f64; LINES],
+    /// By how much the channel, at an input all channels together, come later than the nominal model predicts, s; zero at every other
+    /// site.
+    pub late_s: f64,
     /// Strongest lines of the motion, Hz.
     pub motion_hz: [f64; LINES],
 }
@@ -68,6 +71,7 @@ impl SiteScale {
             mass_kg: 1.0,
             lines_hz: [0.0; LINES],
             carriers_hz: [0.0; LINES],
+            late_s: 0.0,
             motion_hz: [0.0; LINES],
         }
     }

@@ -75,6 +75,7 @@ mod fit;
 mod gram;
 mod initial;
 mod joint;
+mod late;
 mod layout;
 mod linearise;
 mod merit;

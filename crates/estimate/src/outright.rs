@@ -7,7 +7,7 @@
 //! in proportion at what the data ask for.
 
 use crate::base::{Base, InCommon, Regressor, Trial};
-use crate::score::{SHAPES_TOGETHER, Score, sized};
+use crate::score::{SHAPES_TOGETHER, Score, best_first, sized};
 use crate::{Candidate, EstimateError};
 
 /// Scores one candidate at each of many values, best first. Values from which the plant runs away are
@@ -28,7 +28,7 @@ pub fn score_outright(
             scores.extend(base.score_resized(candidate, values, &in_common, trial));
         }
     }
-    scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    best_first(&mut scores);
     Ok(scores)
 }
 

@@ -47,7 +47,36 @@ pub fn score(
     candidate: &Candidate,
     scale: &SiteScale,
 ) -> Result<Vec<Score>, EstimateError> {
-    score_shapes(base, candidate, &candidate.effect.starts(scale))
+    let mut scores = score_shapes(base, candidate, &candidate.effect.starts(scale))?;
+    scores.extend(score_as_they_stand(
+        base,
+        candidate,
+        &candidate.effect.pointed_at(scale),
+    )?);
+    best_first(&mut scores);
+    Ok(scores)
+}
+
+pub(crate) fn best_first(scores: &mut [Score]) {
+    scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+}
+
+/// Scores one candidate at values that it has no need to grow to.
+fn score_as_they_stand(
+    base: &Base<'_>,
+    candidate: &Candidate,
+    points: &[Vec<f64>],
+) -> Result<Vec<Score>, EstimateError> {
+    let mut scores = Vec::with_capacity(points.len());
+    for few in points.chunks(SHAPES_TOGETHER) {
+        let trials: Vec<Trial> = few.iter().map(|values| (values.clone(), 1.0)).collect();
+        let in_common = base.in_common(&base.columns(candidate, &trials)?);
+        for (trial, values) in few.iter().enumerate() {
+            let column = Regressor { trial, run: None };
+            scores.extend(base.score_as_it_stands(candidate, values, &in_common, &[column]));
+        }
+    }
+    Ok(scores)
 }
 
 /// [`score`](score()) from given shapes.
@@ -70,7 +99,7 @@ pub fn score_shapes(
             scores.extend(base.score_shape(candidate, shape, &in_common, own));
         }
     }
-    scores.sort_by(|a: &Score, b: &Score| b.gain.total_cmp(&a.gain));
+    best_first(&mut scores);
     Ok(scores)
 }
 
@@ -163,12 +192,20 @@ impl Base<'_> {
                 self.score_sizes(candidate, shape, &sizes, solution)
             }
             // Without a size to grow from (a limit): by the whole of what it does.
-            Way::AsItStands => {
-                let (amplitude, energy) = self.amplitudes(in_common, &everywhere)?;
-                (amplitude[0] > 0.0).then(|| self.scored(candidate, shape.to_vec(), energy))
-            }
+            Way::AsItStands => self.score_as_it_stands(candidate, shape, in_common, &everywhere),
             Way::ByClock(clock) => self.score_clock(candidate, shape, clock, in_common, own),
         }
+    }
+
+    fn score_as_it_stands(
+        &self,
+        candidate: &Candidate,
+        values: &[f64],
+        in_common: &InCommon,
+        column: &[Regressor],
+    ) -> Option<Score> {
+        let (amplitude, energy) = self.amplitudes(in_common, column)?;
+        (amplitude[0] > 0.0).then(|| self.scored(candidate, values.to_vec(), energy))
     }
 
     fn score_sizes(

@@ -91,6 +91,7 @@ impl Problem {
             mass_kg: at_port.or(mass_at(&self.model, at)).unwrap_or(1.0),
             lines_hz: self.lines_left(fit, at),
             carriers_hz: self.carriers_left(fit, at),
+            late_s: self.late(fit, at),
             motion_hz: lines(&[moved.unwrap_or_default()], step),
             ..SiteScale::plain(displacement_m, velocity_m_per_s, force_n)
         })

@@ -155,6 +155,48 @@ fn verify_a_sweep_finds_a_swinging_stiffness() {
     assert!(!by_line, "a line would have told");
 }
 
+/// A sensor or an input that is late by many swings of the motion: from a short delay a fit ends in another valley; what was measured,
+/// shifted along what is predicted, tells the delay.
+#[test]
+fn verify_a_long_delay_is_told_by_the_records() {
+    let model = model(OSCILLATOR);
+    let delay = 1.234;
+    let mut normal = Normal(11);
+    let force: Vec<f64> = (0..1200).map(|_| 30.0 * normal.draw()).collect();
+    let places = [
+        ("sensor_delay", Location::Channel("y".into())),
+        ("input_delay", Location::Input("u".into())),
+    ];
+    for (kind, at) in places {
+        let late = [placed(kind, at.clone(), &[delay])];
+        let run = truth(&model, &late, force.clone(), 0.01, &[0.0; 2]);
+        let problem = problem(&model, noisy(&run, 1e-4, 3));
+        let weights = FitOptions::white(1);
+        let nothing = start(vec![], vec![], &[0.0; 2]);
+        let base = fit(&problem, &nothing, &weights).unwrap();
+        let scale = problem.site_scale(&base, &at).unwrap();
+        assert!((scale.late_s - delay).abs() < 0.011, "{}", scale.late_s);
+        let linear = linearise_at(&problem, &base, &weights).unwrap();
+        let from = |values: &[f64]| {
+            let effects = vec![placed(kind, at.clone(), values)];
+            let from = start(effects, vec![], &[0.0; 2]);
+            let fitted = fit(&problem, &from, &weights).unwrap();
+            fitted.estimate.effects[0].values[0]
+        };
+        let candidate = candidate(kind, at.clone());
+        let scores = score(&linear, &candidate, &scale).unwrap();
+        let found = from(&scores[0].start.values);
+        assert!((found - delay).abs() < 1e-3, "{kind} of {found} s");
+        for short in candidate.effect.starts(&scale) {
+            let found = from(&short);
+            assert!(
+                (found - delay).abs() > 0.1,
+                "a short one leads to {found} s"
+            );
+        }
+    }
+}
+
 /// A slide whose speed alone is measured, and a force that repeats along its way.
 const SLIDE: &str = r#"schema = "simgap-model/1"
 name = "slide"

@@ -1,4 +1,4 @@
-//! Autocorrelation, and the number of independent samples a coloured residual is worth.
+//! Autocorrelation, the number of independent samples a coloured residual is worth, and the correlation of two signals.
 
 use rustfft::FftPlanner;
 
@@ -49,6 +49,62 @@ pub fn autocorrelation(values: &[f64], max_lag: usize) -> Result<Vec<f64>, Signa
         return Err(SignalError::Flat { what: "values" });
     }
     Ok(power[..=max_lag].iter().map(|z| z.re / at_zero).collect())
+}
+
+/// Correlation of a signal with an earlier one of the same length at lags 0 … `max_lag`, not normalised.
+///
+/// ```text
+/// c_k = Σ_{n<N-k} x_{n+k} y_n
+/// ```
+///
+/// In the square of the unit of both. O(N log N).
+///
+/// # Errors
+///
+/// [`SignalError::TooShort`] unless both are longer than `max_lag`, [`SignalError::LengthMismatch`], [`SignalError::NonFinite`].
+///
+/// # Examples
+///
+/// ```
+/// use simgap_signal::correlation::cross_correlation;
+/// let c = cross_correlation(&[0.0, 1.0, 2.0, 3.0], &[1.0, 2.0, 3.0, 4.0], 2)?;
+/// for (found, exact) in c.iter().zip([20.0, 14.0, 8.0]) {
+///     assert!((found - exact).abs() < 1e-12);
+/// }
+/// # Ok::<(), simgap_signal::SignalError>(())
+/// ```
+pub fn cross_correlation(
+    signal: &[f64],
+    earlier: &[f64],
+    max_lag: usize,
+) -> Result<Vec<f64>, SignalError> {
+    check::finite("signal", signal, max_lag + 1)?;
+    check::finite("earlier", earlier, max_lag + 1)?;
+    check::same_len("earlier", earlier.len(), "signal", signal.len())?;
+    let products = cross_products(earlier, signal);
+    Ok(products[..=max_lag].iter().map(|z| z.re).collect())
+}
+
+/// Σ_i t_i c_{i+m} at index m (negative m from the end).
+pub(crate) fn cross_products(t: &[f64], c: &[f64]) -> Vec<Complex64> {
+    let len = (2 * t.len()).next_power_of_two();
+    let mut planner = FftPlanner::new();
+    let forward = planner.plan_fft_forward(len);
+    let transform = |values: &[f64]| {
+        let mut z = vec![Complex64::ZERO; len];
+        for (z, v) in z.iter_mut().zip(values) {
+            z.re = *v;
+        }
+        forward.process(&mut z);
+        z
+    };
+    let t_bins = transform(t);
+    let mut product = transform(c);
+    for (p, t_k) in product.iter_mut().zip(&t_bins) {
+        *p *= t_k.conj() / len as f64;
+    }
+    planner.plan_fft_inverse(len).process(&mut product);
+    product
 }
 
 /// Number of independent samples with the same variance of the mean as this residual.

@@ -1,6 +1,6 @@
 //! An input reaches the plant late.
 
-use super::sensor_delay::Delay;
+use super::sensor_delay::{Delay, long_delay, short_delays};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// An input reaches the plant late: a bus, a controller cycle.
@@ -36,7 +36,11 @@ impl Effect for InputDelay {
     }
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        vec![vec![0.5 * scale.time_step_s], vec![3.0 * scale.time_step_s]]
+        short_delays(scale)
+    }
+
+    fn pointed_at(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        long_delay(scale)
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -10,8 +10,23 @@ use crate::signal_map::{Retiming, Sampled};
 /// ```
 pub(crate) struct SensorDelay;
 
+/// Delays that a fit starts from, in samples.
+const SHORT: [f64; 2] = [0.5, 3.0];
+
 pub(super) struct Delay {
     pub(super) delay_s: f64,
+}
+
+/// Starting values of a delay that is short against what the signal does.
+pub(super) fn short_delays(scale: &SiteScale) -> Vec<Vec<f64>> {
+    SHORT.map(|steps| vec![steps * scale.time_step_s]).into()
+}
+
+/// The delay that signals which come late by more show themselves.
+pub(super) fn long_delay(scale: &SiteScale) -> Vec<Vec<f64>> {
+    let [_, longest] = SHORT;
+    let is_long = scale.late_s > longest * scale.time_step_s;
+    is_long.then(|| vec![scale.late_s]).into_iter().collect()
 }
 
 impl Retiming for Delay {
@@ -53,7 +68,11 @@ impl Effect for SensorDelay {
     }
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        vec![vec![0.5 * scale.time_step_s], vec![3.0 * scale.time_step_s]]
+        short_delays(scale)
+    }
+
+    fn pointed_at(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
+        long_delay(scale)
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -16,7 +16,7 @@ use crate::motion;
 use crate::search::{FITTED, Search};
 
 /// Steps of a rough fit.
-const ROUGH_STEPS: usize = 3;
+pub(crate) const ROUGH_STEPS: usize = 3;
 /// Steps of a hidden mass as a multiple: the way of a mode to its frequency, mass and stiffness winds.
 const WINDING: usize = 4;
 /// Sets that are finished of more: those of the best starts, and those of the others that are the best once they are fitted roughly.
@@ -112,18 +112,22 @@ impl Search<'_> {
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.
     fn scores(&self, base: &CandidateModel, linear: &Base<'_>) -> Vec<Score> {
-        // Lines that the set leaves: where clocks and hidden modes start.
-        let mut lines: Vec<(Location, [f64; LINES])> = vec![];
+        // Lines that the set leaves, and by how much signals come late: where clocks, hidden modes and long delays start.
+        let mut left: Vec<(Location, [f64; LINES], f64)> = vec![];
         for (candidate, _) in &self.space.candidates {
-            if lines.iter().all(|(at, _)| *at != candidate.at) {
-                let left = self.problem.lines_left(&base.fit, &candidate.at);
-                lines.push((candidate.at.clone(), left));
+            if left.iter().all(|(at, ..)| *at != candidate.at) {
+                let lines_hz = self.problem.lines_left(&base.fit, &candidate.at);
+                let late_s = self.problem.late(&base.fit, &candidate.at);
+                left.push((candidate.at.clone(), lines_hz, late_s));
             }
         }
         let sized = |candidate: &Candidate, scale: &SiteScale| {
-            let left = lines.iter().find(|(at, _)| *at == candidate.at);
+            let left = left.iter().find(|(at, ..)| *at == candidate.at);
+            let (lines_hz, late_s) =
+                left.map_or((scale.lines_hz, scale.late_s), |(_, hz, s)| (*hz, *s));
             SiteScale {
-                lines_hz: left.map_or(scale.lines_hz, |(_, lines)| *lines),
+                lines_hz,
+                late_s,
                 ..*scale
             }
         };

@@ -10,4 +10,5 @@ mod recalibrated;
 mod rescaled;
 mod unite;
 
+pub(crate) use add::ROUGH_STEPS;
 pub use recalibrated::RECALIBRATION_STD;

@@ -1,9 +1,8 @@
 //! Objective rating of ISO/TS 18571: corridor, phase, magnitude, slope.
 
-use rustfft::FftPlanner;
-
 use super::dtw::warped_sums;
-use crate::{Complex64, SignalError, check};
+use crate::correlation::cross_products;
+use crate::{SignalError, check};
 
 /// Half widths of the inner and outer corridor, parts of the largest measured value (a_0, b_0).
 const CORRIDOR: (f64, f64) = (0.05, 0.50);
@@ -239,28 +238,6 @@ fn running_sums(values: &[f64]) -> (Vec<f64>, Vec<f64>) {
         squares.push(square);
     }
     (sums, squares)
-}
-
-/// Σ_i t_i c_{i+m} at index m (negative m from the end).
-fn cross_products(t: &[f64], c: &[f64]) -> Vec<Complex64> {
-    let len = (2 * t.len()).next_power_of_two();
-    let mut planner = FftPlanner::new();
-    let forward = planner.plan_fft_forward(len);
-    let transform = |values: &[f64]| {
-        let mut z = vec![Complex64::ZERO; len];
-        for (z, v) in z.iter_mut().zip(values) {
-            z.re = *v;
-        }
-        forward.process(&mut z);
-        z
-    };
-    let t_bins = transform(t);
-    let mut product = transform(c);
-    for (p, t_k) in product.iter_mut().zip(&t_bins) {
-        *p *= t_k.conj() / len as f64;
-    }
-    planner.plan_fft_inverse(len).process(&mut product);
-    product
 }
 
 /// Central differences per sample (one-sided at the ends), averaged over nine samples, over 7, 5, 3, 1
