@@ -49,15 +49,20 @@ impl Gap {
     /// u of (1) for what is left of each channel; zero where there is no gap.
     #[must_use]
     pub fn left(&self, variance: &[f64]) -> f64 {
-        let over_noise = |square: &[f64]| -> f64 {
-            let channels = square.iter().zip(&self.noise).zip(&self.std);
-            channels
-                .map(|((square, noise), std)| (square - NOISE_KNOWN * noise).max(0.0) / (std * std))
-                .sum()
+        let share = |square: &[f64]| -> f64 {
+            let channels = self.over_noise(square).into_iter().zip(&self.std);
+            channels.map(|(rms, std)| (rms / std).powi(2)).sum()
         };
-        let all = over_noise(&self.square);
-        let left = (over_noise(variance) / all).sqrt();
+        let left = (share(variance) / share(&self.square)).sqrt();
         if left.is_finite() { left } else { 0.0 }
+    }
+
+    /// What of the squared discrepancy of each channel is no noise, rms.
+    pub(crate) fn over_noise(&self, square: &[f64]) -> Vec<f64> {
+        let channels = square.iter().zip(&self.noise);
+        channels
+            .map(|(square, noise)| (square - NOISE_KNOWN * noise).max(0.0).sqrt())
+            .collect()
     }
 }
 

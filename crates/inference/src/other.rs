@@ -18,6 +18,7 @@ use simgap_model::Location;
 use crate::candidate_model::{CandidateModel, add, keep};
 use crate::coincidence::{Coincidence, coincidence};
 use crate::gap::{Gap, RELEVANT_SHARE};
+use crate::motion;
 use crate::search::Search;
 
 /// p₀ of (1).
@@ -60,7 +61,13 @@ pub fn other(
     best: &CandidateModel,
     gap: &Gap,
 ) -> Result<Other, EstimateError> {
-    let left = gap.left(&best.fit.variance);
+    let over_noise = gap.over_noise(&best.fit.variance);
+    // What moves no output by enough for a name is no cause.
+    let is_cause = motion::is_enough(&over_noise, &gap.std).any(|enough| enough);
+    let left = match is_cause {
+        true => gap.left(&best.fit.variance),
+        false => 0.0,
+    };
     let law = match left > RELEVANT_SHARE {
         true => best_law(search, base, gap)?,
         false => None,
