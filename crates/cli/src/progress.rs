@@ -8,7 +8,7 @@ use simgap_diagnose::Stage;
 
 /// The stages of a diagnosis and how much of its time has passed at their end, where it goes through all of them: the mean of six, on three real
 /// and three generated machines. One that ends before is done sooner than is said.
-const STAGES: [(Stage, f64); 13] = [
+const STAGES: [(Stage, f64); 14] = [
     (Stage::NominalModel, 0.01),
     (Stage::NominalParameters, 0.015),
     (Stage::Singles, 0.04),
@@ -17,7 +17,8 @@ const STAGES: [(Stage, f64); 13] = [
     (Stage::Pairs, 0.33),
     (Stage::PairsFromManyValues, 0.39),
     (Stage::Threes, 0.44),
-    (Stage::Stretches, 0.80),
+    (Stage::Stretches, 0.78),
+    (Stage::Colour, 0.80),
     (Stage::Changes, 0.95),
     (Stage::Posterior, 0.98),
     (Stage::FinalFit, 0.985),

@@ -136,6 +136,7 @@ pub fn diagnose<R: Borrow<Record>>(
     let base = search.fit(&start)?;
     let pool = search.run(&base)?;
     // The colour of what the set leaves that leaves least, once and for all sets.
+    progress(Stage::Colour.name());
     let mut pool = search.recolour(&pool);
     search.refine(&mut pool)?;
     let stopped_early = is_spent();

@@ -2,17 +2,21 @@
 //!
 //! Samples count by the colour of what the set leaves that leaves least ([`crate::noise_model`]). Under another colour a set that is as it
 //! was has another misfit, which follows from its discrepancies without a fit. Of sets of several effects those are fitted again that
-//! are within reach of the likeliest then.
+//! are within reach of the likeliest then. All start from the sensitivities of the set that holds no effect; a few steps tell which are
+//! worth the whole way.
 
 use rayon::prelude::*;
-use simgap_estimate::misfit;
+use simgap_estimate::{FitOptions, linearise_at, misfit};
 
 use crate::candidate_model::{CandidateModel, least, rank};
 use crate::extended::Visited;
+use crate::proposals::ROUGH_STEPS;
 use crate::search::Search;
 
 /// Log odds beyond which a set is no match for the likeliest, whatever a fit of it still gains.
 const REACH: f64 = 20.0;
+/// Sets that are fitted the whole way even so, the likeliest after a few steps: as many as of single effects.
+const FINISHED: usize = 12;
 
 impl Search<'_> {
     /// The single effects of a ranked pool, its sets of wrong parameters, and those within reach, fitted again with the colour of what the
@@ -37,22 +41,58 @@ impl Search<'_> {
         };
         let expected: Vec<f64> = pool.iter().map(expected).collect();
         let best = expected.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let again = pool.par_iter().zip(expected).filter(|(set, expected)| {
+        let is_again = |(set, expected): &(&CandidateModel, f64)| {
             let is_simple = set.effects().len() == 1 || set.is_of_parameters();
             is_simple || *expected > best - REACH
-        });
-        let fitted = again.filter_map(|(set, _)| self.fit_again(set, is_new));
-        let mut fitted: Vec<CandidateModel> = fitted.collect();
+        };
+        let again = pool.iter().zip(expected).filter(is_again);
+        let (again, stay): (Vec<&CandidateModel>, Vec<&CandidateModel>) = again
+            .map(|(set, _)| set)
+            .partition(|set| is_new || !set.fit.is_finished);
+        let mut sets = self.fit_again(&again);
+        sets.extend(stay.into_iter().cloned());
+        let best = sets.iter().map(CandidateModel::log_posterior);
+        let least = best.fold(f64::NEG_INFINITY, f64::max) - REACH;
+        let better = sets
+            .into_par_iter()
+            .map(|set| self.with_better_states(set, least));
+        let mut fitted: Vec<CandidateModel> = better.collect();
         rank(&mut fitted);
         fitted
     }
 
-    /// A set, fitted again where it has to be, from better initial states where there are any; `None` where the fit fails.
-    fn fit_again(&self, set: &CandidateModel, is_new: bool) -> Option<CandidateModel> {
-        let again = match is_new || !set.fit.is_finished {
-            true => self.fit(&set.fit.estimate).ok()?,
-            false => set.clone(),
+    /// Sets, fitted again from where they are; those of which no fit succeeds are left out.
+    fn fit_again(&self, sets: &[&CandidateModel]) -> Vec<CandidateModel> {
+        let empty = sets.iter().find(|set| set.effects().is_empty());
+        let base = empty.and_then(|empty| self.fit(&empty.fit.estimate).ok());
+        let linear = base
+            .as_ref()
+            .and_then(|base| linearise_at(self.problem, &base.fit, &self.options).ok());
+        let Some(linear) = linear else {
+            let each = sets.par_iter();
+            return each
+                .filter_map(|set| self.fit(&set.fit.estimate).ok())
+                .collect();
         };
-        Some(self.with_better_states(again))
+        let fit = |set: &CandidateModel, most_steps: usize| {
+            let options = FitOptions {
+                most_steps,
+                ..self.options.clone()
+            };
+            let fit = linear.fit(&set.fit.estimate, &options).ok()?;
+            Some(self.candidate_model(fit))
+        };
+        let rough = sets.par_iter().filter_map(|set| fit(set, ROUGH_STEPS));
+        let mut rough: Vec<CandidateModel> = rough.collect();
+        rank(&mut rough);
+        let best = rough.first().map_or(0.0, CandidateModel::log_posterior);
+        let finish = |(place, set): (usize, CandidateModel)| {
+            let is_promising = place < FINISHED || set.log_posterior() > best - REACH;
+            match is_promising && !set.fit.is_finished {
+                true => fit(&set, self.options.most_steps).unwrap_or(set),
+                false => set,
+            }
+        };
+        rough.into_par_iter().enumerate().map(finish).collect()
     }
 }

@@ -21,6 +21,8 @@ pub enum Stage {
     Threes,
     /// Stretches of the records, each with a start of its own.
     Stretches,
+    /// Sets fitted again, with samples that count by the colour of what is left.
+    Colour,
     /// Changes to the best set, in several rounds.
     Changes,
     /// The posterior of all sets that were fitted.
@@ -33,7 +35,7 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in order.
-    pub const ALL: [Stage; 13] = [
+    pub const ALL: [Stage; 14] = [
         Stage::NominalModel,
         Stage::NominalParameters,
         Stage::Singles,
@@ -43,6 +45,7 @@ impl Stage {
         Stage::PairsFromManyValues,
         Stage::Threes,
         Stage::Stretches,
+        Stage::Colour,
         Stage::Changes,
         Stage::Posterior,
         Stage::FinalFit,
@@ -62,6 +65,7 @@ impl Stage {
             Stage::PairsFromManyValues => "pairs from many values",
             Stage::Threes => "sets of three",
             Stage::Stretches => "single effects in stretches",
+            Stage::Colour => "fits under the colour of what is left",
             Stage::Changes => "changes to the best set",
             Stage::Posterior => "posterior",
             Stage::FinalFit => "final fit",

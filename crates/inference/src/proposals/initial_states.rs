@@ -12,17 +12,17 @@ use crate::candidate_model::CandidateModel;
 use crate::search::Search;
 
 impl Search<'_> {
-    /// A set, from initial states found anew where these leave less.
-    pub(crate) fn with_better_states(&self, set: CandidateModel) -> CandidateModel {
+    /// A set, from initial states found anew where these leave less; as it is where it stays less likely than `least` with them.
+    pub(crate) fn with_better_states(&self, set: CandidateModel, least: f64) -> CandidateModel {
         let anew = self
-            .states_anew(&set)
+            .states_anew(&set, least)
             .and_then(|start| self.fit(&start).ok());
         let likelier = anew.filter(|anew| anew.log_posterior() > set.log_posterior());
         likelier.unwrap_or(set)
     }
 
-    /// The values of a set with initial states found anew; `None` where they leave no less.
-    fn states_anew(&self, set: &CandidateModel) -> Option<Start> {
+    /// The values of a set with initial states found anew; `None` where they leave no less, or not by enough.
+    fn states_anew(&self, set: &CandidateModel, least: f64) -> Option<Start> {
         let mut start = set.fit.estimate.clone();
         let placed: Vec<Placed> = start.placed().cloned().collect();
         if !may_part(&placed) {
@@ -34,6 +34,7 @@ impl Search<'_> {
         let of_set = start.effects.iter_mut().chain(&mut start.nominal);
         take_own_values(given.iter_mut().chain(of_set), &found);
         start.initial = found.estimate.initial;
-        (found.misfit < set.fit.misfit - self.options.converged).then_some(start)
+        let gain = set.fit.misfit - found.misfit;
+        (gain > self.options.converged && set.log_posterior() + gain > least).then_some(start)
     }
 }
