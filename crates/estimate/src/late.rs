@@ -37,12 +37,14 @@ impl Problem {
         let std = self.output_std();
         let (mut left, mut counts) = (vec![0.0; most + 1], vec![0.0; most + 1]);
         for &run in &runs {
-            let mut measured: Vec<Vec<f64>> = (0..self.model.outputs.len())
-                .map(|c| self.runs[run].measured[c].clone().unwrap_or_default())
+            let len = self.runs[run].len;
+            let recorded = &self.runs[run].measured;
+            let signals = recorded.iter().map(Option::as_ref);
+            let mut measured: Vec<Vec<f64>> = signals
+                .map(|signal| signal.map_or_else(|| vec![0.0; len], Clone::clone))
                 .collect();
-            let is_measured: Vec<bool> = measured.iter().map(|y| !y.is_empty()).collect();
             self.whiten(run, &mut measured);
-            let seen = channels.iter().filter(|c| is_measured[**c]);
+            let seen = channels.iter().filter(|c| recorded[**c].is_some());
             for &c in seen.filter(|c| std[**c] > 0.0) {
                 let predicted = measured[c].iter().zip(&fit.discrepancy[run][c]);
                 let predicted: Vec<f64> = predicted.map(|(y, e)| y - e).collect();
@@ -52,7 +54,7 @@ impl Problem {
                 let each = left.iter_mut().zip(&mut counts).zip(squares).enumerate();
                 for (k, ((left, count), square)) in each {
                     *left += square / std[c].powi(2);
-                    *count += (self.runs[run].len - k) as f64;
+                    *count += (len - k) as f64;
                 }
             }
         }

@@ -117,7 +117,15 @@ impl Search<'_> {
         for (candidate, _) in &self.space.candidates {
             if left.iter().all(|(at, ..)| *at != candidate.at) {
                 let lines_hz = self.problem.lines_left(&base.fit, &candidate.at);
-                let late_s = self.problem.late(&base.fit, &candidate.at);
+                // Of all channels together: the same at every input.
+                let is_input = |at: &Location| matches!(at, Location::Input(_));
+                let known = left
+                    .iter()
+                    .find(|(at, ..)| is_input(at) && is_input(&candidate.at));
+                let late_s = known.map_or_else(
+                    || self.problem.late(&base.fit, &candidate.at),
+                    |(_, _, late_s)| *late_s,
+                );
                 left.push((candidate.at.clone(), lines_hz, late_s));
             }
         }
