@@ -41,6 +41,18 @@ impl Asked {
         self.places[&key]
     }
 
+    /// Takes a likelier fit of a set that was not asked and that no other stands for; whether it did.
+    pub(crate) fn improve(&mut self, index: usize, set: CandidateModel) -> bool {
+        let is_alone = self.weights[index] == self.sets[index].log_posterior();
+        let is_open = self.stands_for[index].is_none() && is_alone;
+        let is_likelier = set.log_posterior() > self.sets[index].log_posterior();
+        if is_open && is_likelier {
+            self.weights[index] = set.log_posterior();
+            self.sets[index] = set;
+        }
+        is_open && is_likelier
+    }
+
     /// The likeliest of the sets that were not asked, unless its log posterior is further below that of the best answer than this.
     pub(crate) fn next(&self, below: f64) -> Option<usize> {
         let places = || 0..self.sets.len();
@@ -189,6 +201,18 @@ mod tests {
         let sum: f64 = [-40.0, 0.0, 2.0, 1.0].iter().map(|w: &f64| w.exp()).sum();
         assert!((all - sum).abs() < 1e-12 * sum, "no probability is lost");
         assert!((weights[0] - (2f64.exp() + 1f64.exp()).ln()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_likelier_fit_takes_the_place_of_a_set_that_was_not_asked() {
+        let mut asked = asked();
+        assert!(!asked.improve(0, set(-41.0, &["a"])), "less likely");
+        assert!(asked.improve(0, set(-2.0, &["a"])));
+        asked.note(2, 0);
+        assert!(!asked.improve(0, set(9.0, &["a"])), "another stands for it");
+        asked.note(1, 1);
+        assert!(!asked.improve(1, set(9.0, &["b"])), "it was asked");
+        assert_eq!(asked.sets[0].log_posterior(), -2.0);
     }
 
     #[test]

@@ -159,6 +159,10 @@ impl Relevance {
         without: &CandidateModel,
         moved: &[f64],
     ) -> bool {
+        // Values that no prior holds are no set.
+        if without.log_posterior() == f64::NEG_INFINITY {
+            return true;
+        }
         // Of two sets that cannot be told apart the smaller is the answer.
         if with.log_posterior() - without.log_posterior() < INDISTINGUISHABLE {
             return false;
@@ -232,11 +236,18 @@ impl Relevance {
                 true => vec![f64::INFINITY; self.motion.len()],
                 false => moved(search, set, i)?,
             };
-            let place = match asked.places.get(&set.key_without(i)) {
-                Some(&known) => known,
-                None => asked.place(search.fit(&remove(&set.fit.estimate, i, search.nominal))?),
+            let from_here = || search.fit(&remove(&set.fit.estimate, i, search.nominal));
+            let known = asked.places.get(&set.key_without(i)).copied();
+            let place = match known {
+                Some(known) => known,
+                None => asked.place(from_here()?),
             };
-            if !self.is_relevant(search, set, &asked.sets[place], &moved) {
+            let mut is_relevant = self.is_relevant(search, set, &asked.sets[place], &moved);
+            // A search that ended early may have left it elsewhere.
+            if is_relevant && known.is_some() && asked.improve(place, from_here()?) {
+                is_relevant = self.is_relevant(search, set, &asked.sets[place], &moved);
+            }
+            if !is_relevant {
                 return Ok(Some(place));
             }
             // A law beyond a special case of it is held to the same.
