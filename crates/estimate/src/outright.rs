@@ -6,8 +6,8 @@
 //! the place of the column C in (1) of [`score`](crate::score()), and all sizes of the effect are taken
 //! in proportion at what the data ask for.
 
-use crate::base::{Base, InCommon, Regressor, Trial};
-use crate::score::{SHAPES_TOGETHER, Score, best_first, sized};
+use crate::base::{Base, InCommon, Regressor};
+use crate::score::{Score, score_each, sized, whole};
 use crate::{Candidate, EstimateError};
 
 /// Scores one candidate at each of many values, best first. Values from which the plant runs away are
@@ -20,16 +20,9 @@ pub fn score_outright(
     candidate: &Candidate,
     points: &[Vec<f64>],
 ) -> Result<Vec<Score>, EstimateError> {
-    let mut scores = Vec::with_capacity(points.len());
-    for few in points.chunks(SHAPES_TOGETHER) {
-        let trials: Vec<Trial> = few.iter().map(|values| (values.clone(), 1.0)).collect();
-        let in_common = base.in_common(&base.columns(candidate, &trials)?);
-        for (trial, values) in few.iter().enumerate() {
-            scores.extend(base.score_resized(candidate, values, &in_common, trial));
-        }
-    }
-    best_first(&mut scores);
-    Ok(scores)
+    score_each(base, candidate, points, whole, |values, in_common, own| {
+        base.score_resized(candidate, values, in_common, own.start)
+    })
 }
 
 impl Base<'_> {

@@ -22,7 +22,7 @@ use crate::{Candidate, EstimateError};
 /// Size of the trial effect as a share of its starting values: small enough to be linear.
 const TRIAL: f64 = 0.02;
 /// Shapes that are simulated in one batch: their columns are as long as the records.
-pub(crate) const SHAPES_TOGETHER: usize = 8;
+const SHAPES_TOGETHER: usize = 8;
 
 /// What a further effect would bring.
 #[derive(Clone)]
@@ -57,28 +57,6 @@ pub fn score(
     Ok(scores)
 }
 
-pub(crate) fn best_first(scores: &mut [Score]) {
-    scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-}
-
-/// Scores one candidate at values that it has no need to grow to.
-fn score_as_they_stand(
-    base: &Base<'_>,
-    candidate: &Candidate,
-    points: &[Vec<f64>],
-) -> Result<Vec<Score>, EstimateError> {
-    let mut scores = Vec::with_capacity(points.len());
-    for few in points.chunks(SHAPES_TOGETHER) {
-        let trials: Vec<Trial> = few.iter().map(|values| (values.clone(), 1.0)).collect();
-        let in_common = base.in_common(&base.columns(candidate, &trials)?);
-        for (trial, values) in few.iter().enumerate() {
-            let column = Regressor { trial, run: None };
-            scores.extend(base.score_as_it_stands(candidate, values, &in_common, &[column]));
-        }
-    }
-    Ok(scores)
-}
-
 /// [`score`](score()) from given shapes.
 ///
 /// # Errors
@@ -88,19 +66,58 @@ pub fn score_shapes(
     candidate: &Candidate,
     shapes: &[Vec<f64>],
 ) -> Result<Vec<Score>, EstimateError> {
+    let wanted = |shape: &[f64]| trials(candidate, shape);
+    score_each(base, candidate, shapes, wanted, |shape, in_common, own| {
+        base.score_shape(candidate, shape, in_common, own)
+    })
+}
+
+/// Scores one candidate at values that it has no need to grow to.
+fn score_as_they_stand(
+    base: &Base<'_>,
+    candidate: &Candidate,
+    points: &[Vec<f64>],
+) -> Result<Vec<Score>, EstimateError> {
+    score_each(base, candidate, points, whole, |values, in_common, own| {
+        let column = Regressor {
+            trial: own.start,
+            run: None,
+        };
+        base.score_as_it_stands(candidate, values, in_common, &[column])
+    })
+}
+
+/// The effect with all of its values.
+pub(crate) fn whole(values: &[f64]) -> Vec<Trial> {
+    vec![(values.to_vec(), 1.0)]
+}
+
+/// Scores of one candidate at many values, best first: the trials that each wants are simulated a few at a time, and scored by what they
+/// have in common with the base and with each other.
+pub(crate) fn score_each(
+    base: &Base<'_>,
+    candidate: &Candidate,
+    points: &[Vec<f64>],
+    trials: impl Fn(&[f64]) -> Vec<Trial>,
+    scored: impl Fn(&[f64], &InCommon, Range<usize>) -> Option<Score>,
+) -> Result<Vec<Score>, EstimateError> {
     let mut scores = Vec::new();
-    for few in shapes.chunks(SHAPES_TOGETHER) {
-        let wanted: Vec<Vec<Trial>> = few.iter().map(|shape| trials(candidate, shape)).collect();
+    for few in points.chunks(SHAPES_TOGETHER) {
+        let wanted: Vec<Vec<Trial>> = few.iter().map(|values| trials(values)).collect();
         let in_common = base.in_common(&base.columns(candidate, &wanted.concat())?);
         let mut first = 0;
-        for (shape, wanted) in few.iter().zip(wanted) {
+        for (values, wanted) in few.iter().zip(wanted) {
             let own = first..first + wanted.len();
             first = own.end;
-            scores.extend(base.score_shape(candidate, shape, &in_common, own));
+            scores.extend(scored(values, &in_common, own));
         }
     }
     best_first(&mut scores);
     Ok(scores)
+}
+
+fn best_first(scores: &mut [Score]) {
+    scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
 }
 
 /// How the instances of a shape are scored.

@@ -4,7 +4,7 @@ use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, fit};
 
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, least, rank};
-use crate::gap::{Gap, RELEVANT_SHARE};
+use crate::gap::{Gap, RELEVANT_SHARE, over_noise};
 use crate::motion;
 use crate::noise_model::{NOISE_KNOWN, noise_variance, rounding_variance, stepped};
 use crate::search::{ADDED, Search, counts};
@@ -83,10 +83,7 @@ impl Search<'_> {
         let noise = self.noise_of(set);
         let leaves_noise = self.leaves_noise(set, &noise);
         // An effect that is worth a name moves more than this leaves; of a law, another may leave less.
-        let over_noise = set.fit.variance.iter().zip(&noise);
-        let over_noise: Vec<f64> = over_noise
-            .map(|(left, noise)| (left - NOISE_KNOWN * noise).max(0.0).sqrt())
-            .collect();
+        let over_noise: Vec<f64> = over_noise(&set.fit.variance, &noise).collect();
         let are_parameters = !set.effects().is_empty() && set.effects().iter().all(is_nominal);
         let motion = self.problem.output_std();
         let hides_nothing = motion::is_enough(&over_noise, &motion).all(|enough| !enough);

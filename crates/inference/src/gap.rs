@@ -50,20 +50,21 @@ impl Gap {
     #[must_use]
     pub fn left(&self, variance: &[f64]) -> f64 {
         let share = |square: &[f64]| -> f64 {
-            let channels = self.over_noise(square).into_iter().zip(&self.std);
+            let channels = over_noise(square, &self.noise).zip(&self.std);
             channels.map(|(rms, std)| (rms / std).powi(2)).sum()
         };
         let left = (share(variance) / share(&self.square)).sqrt();
         if left.is_finite() { left } else { 0.0 }
     }
+}
 
-    /// What of the squared discrepancy of each channel is no noise, rms.
-    pub(crate) fn over_noise(&self, square: &[f64]) -> Vec<f64> {
-        let channels = square.iter().zip(&self.noise);
-        channels
-            .map(|(square, noise)| (square - NOISE_KNOWN * noise).max(0.0).sqrt())
-            .collect()
-    }
+/// What of the squared discrepancy of each channel is no noise, rms.
+pub(crate) fn over_noise<'a>(
+    square: &'a [f64],
+    noise: &'a [f64],
+) -> impl Iterator<Item = f64> + 'a {
+    let channels = square.iter().zip(noise);
+    channels.map(|(square, noise)| (square - NOISE_KNOWN * noise).max(0.0).sqrt())
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use simgap_model::Location;
 
 use crate::candidate_model::{CandidateModel, add, keep};
 use crate::coincidence::{Coincidence, coincidence};
-use crate::gap::{Gap, RELEVANT_SHARE};
+use crate::gap::{Gap, RELEVANT_SHARE, over_noise};
 use crate::motion;
 use crate::search::Search;
 
@@ -61,7 +61,7 @@ pub fn other(
     best: &CandidateModel,
     gap: &Gap,
 ) -> Result<Other, EstimateError> {
-    let over_noise = gap.over_noise(&best.fit.variance);
+    let over_noise: Vec<f64> = over_noise(&best.fit.variance, &gap.noise).collect();
     // What moves no output by enough for a name is no cause.
     let is_cause = motion::is_enough(&over_noise, &gap.std).any(|enough| enough);
     let left = match is_cause {

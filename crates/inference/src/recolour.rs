@@ -10,13 +10,11 @@ use simgap_estimate::{FitOptions, linearise_at, misfit};
 
 use crate::candidate_model::{CandidateModel, least, rank};
 use crate::extended::Visited;
-use crate::proposals::ROUGH_STEPS;
+use crate::proposals::{FINISHED, ROUGH_STEPS};
 use crate::search::Search;
 
 /// Log odds beyond which a set is no match for the likeliest, whatever a fit of it still gains.
 const REACH: f64 = 20.0;
-/// Sets that are fitted the whole way even so, the likeliest after a few steps: as many as of single effects.
-const FINISHED: usize = 12;
 
 impl Search<'_> {
     /// The single effects of a ranked pool, its sets of wrong parameters, and those within reach, fitted again with the colour of what the
@@ -86,8 +84,10 @@ impl Search<'_> {
         let mut rough: Vec<CandidateModel> = rough.collect();
         rank(&mut rough);
         let best = rough.first().map_or(0.0, CandidateModel::log_posterior);
+        // Even beyond reach as many as of single effects.
+        let most = FINISHED.iter().sum();
         let finish = |(place, set): (usize, CandidateModel)| {
-            let is_promising = place < FINISHED || set.log_posterior() > best - REACH;
+            let is_promising = place < most || set.log_posterior() > best - REACH;
             match is_promising && !set.fit.is_finished {
                 true => fit(&set, self.options.most_steps).unwrap_or(set),
                 false => set,

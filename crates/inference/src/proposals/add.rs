@@ -20,7 +20,7 @@ pub(crate) const ROUGH_STEPS: usize = 3;
 /// Steps of a hidden mass as a multiple: the way of a mode to its frequency, mass and stiffness winds.
 const WINDING: usize = 4;
 /// Sets that are finished of more: those of the best starts, and those of the others that are the best once they are fitted roughly.
-const FINISHED: [usize; 2] = [4, 8];
+pub(crate) const FINISHED: [usize; 2] = [4, 8];
 
 impl Search<'_> {
     /// Every set worth a fit with one more effect than `base`, best first; none where it has been asked before.

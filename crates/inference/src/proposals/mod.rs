@@ -10,5 +10,5 @@ mod recalibrated;
 mod rescaled;
 mod unite;
 
-pub(crate) use add::ROUGH_STEPS;
+pub(crate) use add::{FINISHED, ROUGH_STEPS};
 pub use recalibrated::RECALIBRATION_STD;
