@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
-use simgap_inference::noise_model::{NOISE_KNOWN, accuracy, input_noise};
+use simgap_inference::noise_model::{NOISE_KNOWN, accuracy, accuracy_of_steps, input_noise};
 use simgap_inference::{CandidateModel, RELEVANT_SHARE};
 use simgap_simulate::{MemberPath, Run, substeps_for};
 
@@ -162,19 +162,17 @@ impl<'a> Check<'a> {
     /// Accuracy of the simulation over the motion of each channel.
     fn accuracy(&self, placed: &[Placed], last: &Prediction) -> Result<Vec<f64>, EstimateError> {
         let mut fit = self.recalibrated.clone();
-        fit.estimate.nominal = placed
+        (fit.estimate.nominal, fit.estimate.effects) = placed
             .iter()
-            .filter(|p| simgap_inference::is_nominal(p))
             .cloned()
-            .collect();
+            .partition(simgap_inference::is_nominal);
         fit.estimate.initial.clone_from(&last.initial);
-        let delta = accuracy(&self.problem, &fit)?;
-        let std = self.problem.output_std();
-        Ok(delta
-            .iter()
-            .zip(std)
-            .map(|(delta, std)| delta / std)
-            .collect())
+        let of_inputs = accuracy(&self.problem, &fit)?;
+        let of_steps = accuracy_of_steps(&self.problem, &fit)?;
+        let both = of_inputs.iter().zip(of_steps);
+        let both = both.map(|(inputs, steps)| inputs.hypot(steps));
+        let channels = both.zip(self.problem.output_std());
+        Ok(channels.map(|(delta, std)| delta / std).collect())
     }
 
     /// The motion at each output along the first record.

@@ -146,6 +146,16 @@ impl Problem {
         }
     }
 
+    /// The same problem with nonlinear forces taken in steps half as long.
+    #[must_use]
+    pub fn in_half_steps(&self) -> Problem {
+        Problem {
+            substeps: 2 * self.substeps,
+            leaves_out_ends: self.leaves_out_ends,
+            ..self.with_runs(self.runs.clone())
+        }
+    }
+
     /// Whether a record may be cut: a simulator of the user's begins every run in a state of its own, so that what lies later in a
     /// record cannot be simulated alone.
     #[must_use]

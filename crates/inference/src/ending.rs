@@ -6,7 +6,9 @@ use simgap_estimate::{EstimateError, fit};
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, least, rank};
 use crate::gap::{Gap, RELEVANT_SHARE, over_noise};
 use crate::motion;
-use crate::noise_model::{NOISE_KNOWN, noise_variance, rounding_variance, stepped};
+use crate::noise_model::{
+    NOISE_KNOWN, accuracy_of_steps, noise_variance, rounding_variance, stepped,
+};
 use crate::search::{ADDED, Search, counts};
 
 impl Search<'_> {
@@ -120,12 +122,12 @@ impl Search<'_> {
         channels.all(|(left, (noise, rounded))| *left < NOISE_KNOWN * (noise - rounded).max(0.0))
     }
 
-    /// Noise of the sensors in what a set leaves, and what no set is expected to explain, mean square of each channel.
+    /// Noise of the sensors in what a set leaves, and how far a simulation of it may be off, mean square of each channel.
     #[must_use]
     pub fn noise_of(&self, set: &CandidateModel) -> Vec<f64> {
         let stepped = stepped(self.problem, set.effects());
         let noise = noise_variance(&set.fit.discrepancy, &stepped);
-        let channels = noise.iter().zip(self.floor_variance());
+        let channels = noise.iter().zip(self.floor_of(set));
         channels.map(|(noise, floor)| noise + floor).collect()
     }
 
@@ -133,13 +135,21 @@ impl Search<'_> {
     /// of the inputs, and what the steps of the set round off.
     pub(crate) fn unexplainable(&self, set: &CandidateModel) -> Vec<f64> {
         let rounded = rounding_variance(self.problem, set.effects());
-        let channels = self.floor_variance().zip(rounded);
+        let channels = self.floor_of(set).into_iter().zip(rounded);
         channels.map(|(floor, rounded)| floor + rounded).collect()
     }
 
-    /// What no set is expected to explain, mean square of each channel.
-    fn floor_variance(&self) -> impl Iterator<Item = f64> + '_ {
-        let channels = self.options.floor.iter().zip(self.problem.output_std());
-        channels.map(|(floor, std)| (floor * std).powi(2))
+    /// What no set is expected to explain, and what the steps of the march miss of the forces of this one, mean square of each channel.
+    fn floor_of(&self, set: &CandidateModel) -> Vec<f64> {
+        let std = self.problem.output_std();
+        let of_all = self.options.floor.iter().zip(&std);
+        let of_all = of_all.map(|(floor, std)| (floor * std).powi(2));
+        // A set that cannot be simulated was not fitted.
+        let of_steps = accuracy_of_steps(self.problem, &set.fit);
+        let of_steps = of_steps.unwrap_or_else(|_| vec![0.0; std.len()]);
+        let channels = of_all.zip(of_steps);
+        channels
+            .map(|(floor, steps)| floor + steps.powi(2))
+            .collect()
     }
 }

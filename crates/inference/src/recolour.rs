@@ -19,7 +19,8 @@ const REACH: f64 = 20.0;
 impl Search<'_> {
     /// The single effects of a ranked pool, its sets of wrong parameters, and those within reach, fitted again with the colour of what the
     /// set leaves that leaves least. A fit may end elsewhere under another colour, and single effects are the simplest answers. Where
-    /// the colour is that of the set of before, it stays as it is, and fits that were finished stay too.
+    /// the colour is that of the set of before, it stays as it is, and fits that were finished stay too. Of a search that has ended only the
+    /// sets within reach are fitted again. The likeliest are tried from initial states found anew.
     pub fn recolour(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
         let Some(least) = least(pool) else {
             return vec![];
@@ -39,9 +40,11 @@ impl Search<'_> {
         };
         let expected: Vec<f64> = pool.iter().map(expected).collect();
         let best = expected.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let is_spent = self.is_spent();
         let is_again = |(set, expected): &(&CandidateModel, f64)| {
             let is_simple = set.effects().len() == 1 || set.is_of_parameters();
-            is_simple || *expected > best - REACH
+            let is_base = set.effects().is_empty();
+            is_base || (is_simple && !is_spent) || *expected > best - REACH
         };
         let again = pool.iter().zip(expected).filter(is_again);
         let (again, stay): (Vec<&CandidateModel>, Vec<&CandidateModel>) = again
@@ -49,11 +52,14 @@ impl Search<'_> {
             .partition(|set| is_new || !set.fit.is_finished);
         let mut sets = self.fit_again(&again);
         sets.extend(stay.into_iter().cloned());
-        let best = sets.iter().map(CandidateModel::log_posterior);
-        let least = best.fold(f64::NEG_INFINITY, f64::max) - REACH;
-        let better = sets
-            .into_par_iter()
-            .map(|set| self.with_better_states(set, least));
+        rank(&mut sets);
+        let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
+        let most = if is_spent { 1 } else { FINISHED.iter().sum() };
+        let better = sets.into_par_iter().enumerate();
+        let better = better.map(|(place, set)| match place < most {
+            true => self.with_better_states(set, best - REACH),
+            false => set,
+        });
         let mut fitted: Vec<CandidateModel> = better.collect();
         rank(&mut fitted);
         fitted

@@ -214,12 +214,12 @@ impl<'a> Search<'a> {
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
         rank(&mut pool);
-        let is_settled = self.is_settled(&pool, 0)?;
+        let is_settled = self.settle(&mut pool, 0)?;
         if is_settled || !self.leaves_noise_by_its_colour(&pool) {
             return self.run_on((base, &linear), recalibrated, pool, is_settled);
         }
         pool = self.recolour(&pool);
-        let is_settled = self.is_settled(&pool, 0)?;
+        let is_settled = self.settle(&mut pool, 0)?;
         let base = &self.fit(&base.fit.estimate)?;
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         self.run_on((base, &linear), recalibrated, pool, is_settled)

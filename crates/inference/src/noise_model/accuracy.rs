@@ -1,12 +1,14 @@
-//! How far a simulation may be off because inputs are known at the samples only.
+//! How far a simulation may be off: because inputs are known at the samples only, and because nonlinear forces are taken in steps.
 //!
 //! ```text
 //! a = rms(y − y₂),  b = rms(y₂ − y₄),  δ = a / (ρ − 1),  ρ = b / a within 2 to 16       (1)
+//! δ_h = 4/3 rms(y_h − y_{h/2})                                                            (2)
 //! ```
 //!
 //! y₂ is simulated from inputs of which every other sample is what the cubic through its neighbours says, y₄ from those of
 //! which only every fourth is left. What a curve through samples misses falls with a power of their distance, which ρ tells:
-//! sixteen times for a smooth input, by half for one with steps. Noise of inputs shows in (1) alike.
+//! sixteen times for a smooth input, by half for one with steps. Noise of inputs shows in (1) alike. y_h is simulated in the steps of the
+//! problem, y_{h/2} in half of them: the march is of second order in its steps.
 
 use rayon::prelude::*;
 use simgap_effects::Placed;
@@ -19,7 +21,7 @@ const BOUNDS: [f64; 2] = [2e-4, 1.5e-3];
 /// How many times less a curve through samples at half the distance misses, of an input with steps and of a smooth one.
 const RATIOS: [f64; 2] = [2.0, 16.0];
 
-/// δ_c of each channel, in its unit, for the model of a fit; within the bounds of the standard deviations.
+/// δ of (1) of each channel, in its unit, for the model of a fit; within the bounds of the standard deviations.
 ///
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated.
@@ -43,7 +45,43 @@ pub fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError>
     Ok(delta.zip(std).map(bounded).collect())
 }
 
-/// δ_c by (1) for a model from given states.
+/// δ_h of (2) of each channel, in its unit, for the model and the effects of a fit; at most as much as inputs may miss. Zero where no force
+/// is nonlinear: linear ones are taken exactly.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn accuracy_of_steps(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError> {
+    let finer = problem.in_half_steps();
+    let placed: Vec<Placed> = fit.estimate.placed().cloned().collect();
+    let moved = problem
+        .runs
+        .par_iter()
+        .zip(&fit.estimate.initial)
+        .enumerate();
+    let moved = moved.map(|(r, (run, initial))| {
+        let coarse = problem.simulator(&placed, r)?;
+        let fine = finer.simulator(&placed, r)?;
+        if coarse.steps_per_sample() == fine.steps_per_sample() {
+            return Ok(vec![0.0; problem.model.outputs.len()]);
+        }
+        let coarse = coarse.predict(run, initial)?;
+        let fine = fine.predict(run, initial)?;
+        let channels = coarse.iter().zip(&fine);
+        Ok(channels.map(|(a, b)| squared_distance(a, b)).collect())
+    });
+    let moved = moved.collect::<Result<Vec<Vec<f64>>, EstimateError>>()?;
+    let count: usize = problem.runs.iter().map(|run| run.len).sum();
+    let std = problem.output_std();
+    let of_channel = |(c, std): (usize, &f64)| {
+        let square: f64 = moved.iter().map(|run| run[c]).sum();
+        let delta = 4.0 / 3.0 * (square / count.max(1) as f64).sqrt();
+        let most = BOUNDS[1] * std;
+        if delta < most { delta } else { most }
+    };
+    Ok(std.iter().enumerate().map(of_channel).collect())
+}
+
+/// δ by (1) for a model from given states.
 fn between_samples(
     problem: &Problem,
     placed: &[Placed],
@@ -113,6 +151,10 @@ fn thinned(run: &Run, step: usize) -> Run {
 
 #[cfg(test)]
 mod tests {
+    use simgap_effects::find;
+    use simgap_estimate::{FitOptions, Start, fit};
+    use simgap_model::{Location, Model};
+
     use super::*;
 
     fn run(input: Vec<f64>) -> Run {
@@ -153,5 +195,66 @@ mod tests {
         assert!((beyond(0.15, 30.0) - 0.01).abs() < 1e-12);
         assert!((beyond(0.15, 0.2) - 0.15).abs() < 1e-12);
         assert_eq!(beyond(0.0, 0.0), 0.0);
+    }
+
+    /// A mass on a spring, driven, with or without a cubic spring beside it.
+    fn driven(effects: Vec<Placed>, substeps: usize) -> (Problem, Fit) {
+        let text = r#"
+            schema = "simgap-model/1"
+            name = "axis"
+            [[mass]]
+            name = "m"
+            value = 1.0
+            [[spring]]
+            name = "s"
+            between = ["m", "ground"]
+            stiffness = 400.0
+            [[input]]
+            channel = "u"
+            kind = "force"
+            at = "m"
+            [[output]]
+            channel = "x"
+            kind = "displacement"
+            at = "m"
+        "#;
+        let model = Model::from_toml(text).unwrap();
+        let drive = (0..400).map(|k| 30.0 * (0.13 * k as f64).sin());
+        let mut run = run(drive.collect());
+        (run.time_step_s, run.measured) = (0.01, vec![Some(vec![0.0; 400])]);
+        let mut problem = Problem::new(&model, vec![run]).unwrap();
+        problem.substeps = substeps;
+        let start = Start {
+            effects,
+            nominal: vec![],
+            initial: vec![vec![0.0; 2]],
+        };
+        let held = FitOptions {
+            most_steps: 0,
+            ..FitOptions::white(1)
+        };
+        let fit = fit(&problem, &start, &held).unwrap();
+        // As wide as the motion, for the bound.
+        let moved = fit.discrepancy[0][0].clone();
+        problem.runs[0].measured = vec![Some(moved)];
+        (problem, fit)
+    }
+
+    #[test]
+    fn verify_what_steps_miss_is_told_and_falls_with_their_square() {
+        let at = || Location::Between(["m".into(), "ground".into()]);
+        let cubic = || Placed::new(find("cubic_stiffness").unwrap(), at(), vec![400.0]);
+        let of = |substeps: usize| {
+            let (problem, fit) = driven(vec![cubic()], substeps);
+            accuracy_of_steps(&problem, &fit).unwrap()[0]
+        };
+        let (problem, fit) = driven(vec![cubic()], 2);
+        let fine = driven(vec![cubic()], 64).1;
+        let missed = squared_distance(&fit.discrepancy[0][0], &fine.discrepancy[0][0]);
+        let missed = (missed / problem.runs[0].len as f64).sqrt();
+        assert!((of(2) / missed - 1.0).abs() < 0.05, "{} {missed}", of(2));
+        assert!((of(2) / of(4) - 4.0).abs() < 0.2, "{} {}", of(2), of(4));
+        let (problem, fit) = driven(vec![], 2);
+        assert_eq!(accuracy_of_steps(&problem, &fit).unwrap(), [0.0]);
     }
 }

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! V_c is the squared discrepancy of a channel, n_c the number of its samples that are independent. ε_c comes from the
-//! records and the nominal model ([`accuracy`], [`input_noise`]). The share of independent samples is that of one
+//! records and the nominal model ([`accuracy`], [`input_noise`]); what the steps of the march miss of the forces of a set
+//! ([`accuracy_of_steps`]) counts beside it where it is asked whether the set leaves more than that. The share of independent samples is that of one
 //! residual, and the same for all sets that are compared: first what re-estimated parameters leave, then what the best
 //! set leaves, once; before larger sets where a single effect leaves nothing but noise. With it the model discrepancy has an amplitude that every set infers, V_c itself, and a colour
 //! that none of them chooses. Coloured noise of a sensor has its share of independent samples alike. Where noise of the
@@ -19,7 +20,7 @@ mod input_noise;
 mod sensor;
 mod whitening;
 
-pub use accuracy::accuracy;
+pub use accuracy::{accuracy, accuracy_of_steps};
 pub use input_noise::{InputNoise, input_noise};
 pub use sensor::{
     is_sensor_noise, noise_variance, rounding_variance, stepped, stored_rounding_variance,
