@@ -263,6 +263,12 @@ pub trait Effect: Sync + Send {
         clock.is_none_or(|clock| values[clock.frequency] * scale.duration_s >= 1.0)
     }
 
+    /// Density of the prior of the kind at these values over that of its parameters one by one: less than one where machines hardly are.
+    fn weight(&self, values: &[f64], scale: &SiteScale) -> f64 {
+        let _ = (values, scale);
+        1.0
+    }
+
     /// Whether it is one of the terms that the loss of a machine is usually made of: a force against the velocity, in
     /// proportion to its only value. Such terms stand for each other, and may be found only together.
     fn is_loss_term(&self) -> bool {

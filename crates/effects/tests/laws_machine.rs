@@ -67,6 +67,19 @@ fn verify_asymmetric_damping() {
 
 /// With one damping for both directions it is a damper, or a factor on the damper of the model: c + c_f = f c.
 #[test]
+fn verify_a_damper_that_gives_energy_is_rare_and_not_impossible() {
+    let scale = SiteScale {
+        damping_n_s_per_m: 10.0,
+        has_damper: true,
+        ..SiteScale::plain(1e-3, 0.1, 100.0)
+    };
+    let weight = |values: [f64; 2]| effect("asymmetric_damping").weight(&values, &scale);
+    assert_eq!(weight([5.0, -9.0]), 1.0);
+    assert_eq!(weight([5.0, -11.0]), 0.05);
+    assert!(effect("asymmetric_damping").has_support(&[5.0, -11.0], &scale));
+}
+
+#[test]
 fn verify_asymmetric_damping_shrinks_to_a_damper() {
     let scale = SiteScale {
         damping_n_s_per_m: 50.0,

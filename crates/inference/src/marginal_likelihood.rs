@@ -28,7 +28,7 @@ use crate::candidate_model::{NominalPrior, is_nominal};
 /// Standard deviation of the prior on an initial state, in units of its typical size.
 pub(crate) const STATE_STD: f64 = 10.0;
 
-/// ln Z of (2); minus infinity where an effect has vanished, since the set is then a smaller one, and
+/// ln Z of (2), with what the kinds say of values taken together ([`simgap_effects::Effect::weight`]); minus infinity where an effect has vanished, since the set is then a smaller one, and
 /// where its prior has no support.
 pub(crate) fn log_marginal_likelihood(
     fit: &Fit,
@@ -54,9 +54,16 @@ pub(crate) fn log_marginal_likelihood(
         .filter(|(_, coordinate)| !coordinate.is_held)
         .map(|(index, coordinate)| term(index, coordinate, effects, &scale_at, nominal))
         .collect();
+    let weights = effects.iter().map(|placed| {
+        let scale = scale_at(&placed.at);
+        scale.map_or(0.0, |scale| {
+            placed.effect.weight(&placed.values, &scale).ln()
+        })
+    });
+    let weights: f64 = weights.sum();
     priors
         .and_then(|terms| integral(fit, &terms))
-        .map_or(f64::NEG_INFINITY, |integral| integral.log)
+        .map_or(f64::NEG_INFINITY, |integral| integral.log + weights)
 }
 
 /// A coordinate that is integrated over.

@@ -14,6 +14,9 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// Reference: \[Janot2019\], for a positioning axis.
 pub(crate) struct AsymmetricDamping;
 
+/// Density of the prior at values that give energy in one direction, as a share of that at the others.
+const DRIVEN: f64 = 0.05;
+
 struct Law {
     forward: f64,
     backward: f64,
@@ -103,13 +106,16 @@ impl Effect for AsymmetricDamping {
         }
     }
 
-    /// Together with the damper of the model it takes energy in both directions, as every damper does.
-    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
+    /// Together with the damper of the model it takes energy in both directions, as every damper does, unless something drives the motion.
+    fn weight(&self, values: &[f64], scale: &SiteScale) -> f64 {
         let damper = match scale.has_damper {
             true => scale.damping_n_s_per_m,
             false => 0.0,
         };
-        values.iter().all(|value| damper + value >= 0.0)
+        match values.iter().all(|value| damper + value >= 0.0) {
+            true => 1.0,
+            false => DRIVEN,
+        }
     }
 
     fn coincidence(&self) -> Option<[usize; 2]> {
