@@ -76,7 +76,8 @@ fn verify_a_damper_that_gives_energy_is_rare_and_not_impossible() {
     let weight = |values: [f64; 2]| effect("asymmetric_damping").weight(&values, &scale);
     assert_eq!(weight([5.0, -9.0]), 1.0);
     assert_eq!(weight([5.0, -11.0]), 0.05);
-    assert!(effect("asymmetric_damping").has_support(&[5.0, -11.0], &scale));
+    let is_met = |values: [f64; 2]| effect("asymmetric_damping").has_support(&values, &scale);
+    assert!(is_met([5.0, -11.0]) && is_met([-19.0, 0.0]) && !is_met([-21.0, 0.0]));
 }
 
 #[test]

@@ -22,6 +22,15 @@ struct Law {
     backward: f64,
 }
 
+/// Damping in each direction, that of the model included.
+fn total(values: &[f64], scale: &SiteScale) -> [f64; 2] {
+    let damper = match scale.has_damper {
+        true => scale.damping_n_s_per_m,
+        false => 0.0,
+    };
+    [0, 1].map(|direction| damper + values[direction])
+}
+
 impl ForceLaw for Law {
     lanes!(forward, backward);
 
@@ -106,13 +115,15 @@ impl Effect for AsymmetricDamping {
         }
     }
 
-    /// Together with the damper of the model it takes energy in both directions, as every damper does, unless something drives the motion.
+    /// Together with the damper of the model it takes energy on the whole of a way there and back.
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
+        let [forward, backward] = total(values, scale);
+        forward + backward >= 0.0
+    }
+
+    /// It takes energy in both directions, as every damper does, unless something drives the motion.
     fn weight(&self, values: &[f64], scale: &SiteScale) -> f64 {
-        let damper = match scale.has_damper {
-            true => scale.damping_n_s_per_m,
-            false => 0.0,
-        };
-        match values.iter().all(|value| damper + value >= 0.0) {
+        match total(values, scale).iter().all(|damping| *damping >= 0.0) {
             true => 1.0,
             false => DRIVEN,
         }

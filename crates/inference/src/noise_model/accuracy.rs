@@ -29,20 +29,27 @@ pub fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError>
     let estimate = &fit.estimate;
     let delta = between_samples(problem, &estimate.nominal, &estimate.initial)?;
     let [least, most] = BOUNDS;
-    let std = problem.output_std().into_iter();
-    let filtered = std.clone().zip(problem.motion_std());
-    let delta = delta.into_iter().zip(filtered);
-    // Of filtered discrepancies it is taken to be the same share.
-    let delta = delta.map(|(delta, (filtered, std))| match problem.is_whitened() {
-        true => delta * filtered / std,
-        false => delta,
-    });
+    let delta = as_filtered(problem, delta).into_iter();
     // A channel that does not move has no bounds to keep; NaN is off by as much as may be.
     let bounded = |(delta, std): (f64, f64)| match delta < most * std {
         true => delta.max(least * std),
         false => most * std,
     };
-    Ok(delta.zip(std).map(bounded).collect())
+    Ok(delta.zip(problem.output_std()).map(bounded).collect())
+}
+
+/// δ of filtered discrepancies, where they are filtered: it is taken to be the same share.
+fn as_filtered(problem: &Problem, delta: Vec<f64>) -> Vec<f64> {
+    if !problem.is_whitened() {
+        return delta;
+    }
+    let channels = problem.output_std().into_iter().zip(problem.motion_std());
+    let share = channels.map(|(filtered, std)| filtered / std);
+    delta
+        .into_iter()
+        .zip(share)
+        .map(|(delta, share)| delta * share)
+        .collect()
 }
 
 /// δ_h of (2) of each channel, in its unit, for the model and the effects of a fit; at most as much as inputs may miss. Zero where no force
@@ -71,14 +78,17 @@ pub fn accuracy_of_steps(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, Estim
     });
     let moved = moved.collect::<Result<Vec<Vec<f64>>, EstimateError>>()?;
     let count: usize = problem.runs.iter().map(|run| run.len).sum();
-    let std = problem.output_std();
-    let of_channel = |(c, std): (usize, &f64)| {
+    let of_channel = |c: usize| {
         let square: f64 = moved.iter().map(|run| run[c]).sum();
-        let delta = 4.0 / 3.0 * (square / count.max(1) as f64).sqrt();
-        let most = BOUNDS[1] * std;
-        if delta < most { delta } else { most }
+        4.0 / 3.0 * (square / count.max(1) as f64).sqrt()
     };
-    Ok(std.iter().enumerate().map(of_channel).collect())
+    let delta = (0..problem.model.outputs.len()).map(of_channel).collect();
+    let delta = as_filtered(problem, delta).into_iter();
+    let bounded = |(delta, std): (f64, f64)| match delta < BOUNDS[1] * std {
+        true => delta,
+        false => BOUNDS[1] * std,
+    };
+    Ok(delta.zip(problem.output_std()).map(bounded).collect())
 }
 
 /// δ by (1) for a model from given states.
