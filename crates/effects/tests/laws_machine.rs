@@ -65,7 +65,6 @@ fn verify_asymmetric_damping() {
     assert_near(mean, needed, QUADRATURE * needed);
 }
 
-/// With one damping for both directions it is a damper, or a factor on the damper of the model: c + c_f = f c.
 #[test]
 fn verify_a_damper_that_gives_energy_is_rare_and_not_impossible() {
     let scale = SiteScale {
@@ -80,6 +79,7 @@ fn verify_a_damper_that_gives_energy_is_rare_and_not_impossible() {
     assert!(is_met([5.0, -11.0]) && is_met([-19.0, 0.0]) && !is_met([-21.0, 0.0]));
 }
 
+/// With one damping for both directions it is a damper, or a factor on the damper of the model: c + c_f = f c.
 #[test]
 fn verify_asymmetric_damping_shrinks_to_a_damper() {
     let scale = SiteScale {

@@ -146,16 +146,6 @@ impl Problem {
         }
     }
 
-    /// The same problem with nonlinear forces taken in steps half as long.
-    #[must_use]
-    pub fn in_half_steps(&self) -> Problem {
-        Problem {
-            substeps: 2 * self.substeps,
-            leaves_out_ends: self.leaves_out_ends,
-            ..self.with_runs(self.runs.clone())
-        }
-    }
-
     /// Whether a record may be cut: a simulator of the user's begins every run in a state of its own, so that what lies later in a
     /// record cannot be simulated alone.
     #[must_use]
@@ -185,10 +175,31 @@ impl Problem {
     /// # Errors
     /// [`EstimateError`] when a place is not in the model, or the work was cancelled.
     pub fn simulator(&self, effects: &[Placed], run: usize) -> Result<Simulator, EstimateError> {
+        self.simulator_in(self.substeps, effects, run)
+    }
+
+    /// [`Problem::simulator`] with nonlinear forces taken in steps half as long.
+    ///
+    /// # Errors
+    /// As [`Problem::simulator`].
+    pub fn simulator_in_half_steps(
+        &self,
+        effects: &[Placed],
+        run: usize,
+    ) -> Result<Simulator, EstimateError> {
+        self.simulator_in(2 * self.substeps, effects, run)
+    }
+
+    fn simulator_in(
+        &self,
+        substeps: usize,
+        effects: &[Placed],
+        run: usize,
+    ) -> Result<Simulator, EstimateError> {
         self.cancel.check()?;
         let all = self.given.iter().chain(effects);
         let all: Vec<Placed> = all.map(|placed| placed.in_record(run)).collect();
-        Simulator::with_plant(&self.model, &all, self.substeps, self.plant.as_ref())
+        Simulator::with_plant(&self.model, &all, substeps, self.plant.as_ref())
     }
 
     /// Whether the nominal model with effects on top differs from run to run.

@@ -28,8 +28,8 @@ use crate::candidate_model::{NominalPrior, is_nominal};
 /// Standard deviation of the prior on an initial state, in units of its typical size.
 pub(crate) const STATE_STD: f64 = 10.0;
 
-/// ln Z of (2), with what the kinds say of values taken together ([`simgap_effects::Effect::weight`]); minus infinity where an effect has vanished, since the set is then a smaller one, and
-/// where its prior has no support.
+/// ln Z of (2), with the weights of values taken together ([`simgap_effects::Effect::weight`]); minus infinity where an effect has
+/// vanished, since the set is then a smaller one, and where its prior has no support.
 pub(crate) fn log_marginal_likelihood(
     fit: &Fit,
     scale_at: impl Fn(&Location) -> Option<SiteScale>,

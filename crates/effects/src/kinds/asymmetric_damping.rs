@@ -22,15 +22,6 @@ struct Law {
     backward: f64,
 }
 
-/// Damping in each direction, that of the model included.
-fn total(values: &[f64], scale: &SiteScale) -> [f64; 2] {
-    let damper = match scale.has_damper {
-        true => scale.damping_n_s_per_m,
-        false => 0.0,
-    };
-    [0, 1].map(|direction| damper + values[direction])
-}
-
 impl ForceLaw for Law {
     lanes!(forward, backward);
 
@@ -42,6 +33,15 @@ impl ForceLaw for Law {
         };
         damping * motion.velocity
     }
+}
+
+/// Damping in each direction, that of the model included.
+fn total(values: &[f64], scale: &SiteScale) -> [f64; 2] {
+    let damper = match scale.has_damper {
+        true => scale.damping_n_s_per_m,
+        false => 0.0,
+    };
+    [0, 1].map(|direction| damper + values[direction])
 }
 
 impl Effect for AsymmetricDamping {

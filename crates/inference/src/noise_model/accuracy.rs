@@ -28,28 +28,24 @@ const RATIOS: [f64; 2] = [2.0, 16.0];
 pub fn accuracy(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError> {
     let estimate = &fit.estimate;
     let delta = between_samples(problem, &estimate.nominal, &estimate.initial)?;
-    let [least, most] = BOUNDS;
-    let delta = as_filtered(problem, delta).into_iter();
-    // A channel that does not move has no bounds to keep; NaN is off by as much as may be.
-    let bounded = |(delta, std): (f64, f64)| match delta < most * std {
-        true => delta.max(least * std),
-        false => most * std,
-    };
-    Ok(delta.zip(problem.output_std()).map(bounded).collect())
+    Ok(bounded(problem, delta, BOUNDS))
 }
 
-/// δ of filtered discrepancies, where they are filtered: it is taken to be the same share.
-fn as_filtered(problem: &Problem, delta: Vec<f64>) -> Vec<f64> {
-    if !problem.is_whitened() {
-        return delta;
-    }
+/// δ within bounds over the standard deviation of each channel. Of filtered discrepancies it is taken to be the same share.
+fn bounded(problem: &Problem, delta: Vec<f64>, [least, most]: [f64; 2]) -> Vec<f64> {
     let channels = problem.output_std().into_iter().zip(problem.motion_std());
-    let share = channels.map(|(filtered, std)| filtered / std);
-    delta
-        .into_iter()
-        .zip(share)
-        .map(|(delta, share)| delta * share)
-        .collect()
+    let of_channel = |(delta, (std, motion)): (f64, (f64, f64))| {
+        let delta = match problem.is_whitened() {
+            true => delta * std / motion,
+            false => delta,
+        };
+        // A channel that does not move has no bounds to keep; NaN is off by as much as may be.
+        match delta < most * std {
+            true => delta.max(least * std),
+            false => most * std,
+        }
+    };
+    delta.into_iter().zip(channels).map(of_channel).collect()
 }
 
 /// δ_h of (2) of each channel, in its unit, for the model and the effects of a fit; at most as much as inputs may miss. Zero where no force
@@ -58,7 +54,6 @@ fn as_filtered(problem: &Problem, delta: Vec<f64>) -> Vec<f64> {
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated.
 pub fn accuracy_of_steps(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, EstimateError> {
-    let finer = problem.in_half_steps();
     let placed: Vec<Placed> = fit.estimate.placed().cloned().collect();
     let moved = problem
         .runs
@@ -67,7 +62,7 @@ pub fn accuracy_of_steps(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, Estim
         .enumerate();
     let moved = moved.map(|(r, (run, initial))| {
         let coarse = problem.simulator(&placed, r)?;
-        let fine = finer.simulator(&placed, r)?;
+        let fine = problem.simulator_in_half_steps(&placed, r)?;
         if coarse.steps_per_sample() == fine.steps_per_sample() {
             return Ok(vec![0.0; problem.model.outputs.len()]);
         }
@@ -83,12 +78,7 @@ pub fn accuracy_of_steps(problem: &Problem, fit: &Fit) -> Result<Vec<f64>, Estim
         4.0 / 3.0 * (square / count.max(1) as f64).sqrt()
     };
     let delta = (0..problem.model.outputs.len()).map(of_channel).collect();
-    let delta = as_filtered(problem, delta).into_iter();
-    let bounded = |(delta, std): (f64, f64)| match delta < BOUNDS[1] * std {
-        true => delta,
-        false => BOUNDS[1] * std,
-    };
-    Ok(delta.zip(problem.output_std()).map(bounded).collect())
+    Ok(bounded(problem, delta, [0.0, BOUNDS[1]]))
 }
 
 /// δ by (1) for a model from given states.
