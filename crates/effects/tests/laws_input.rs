@@ -146,6 +146,33 @@ fn verify_held_input_is_a_delay_for_slow_inputs() {
     }
 }
 
+/// Of the holds that a delay may stand for, one is within a quarter of a hold of the truth all along a record, in time and in place.
+#[test]
+fn verify_a_hold_grows_from_the_delay_that_it_is_seen_as() {
+    let held = simgap_effects::find("held_input").unwrap();
+    let sizes = SiteScale {
+        duration_s: 9.0,
+        ..scale()
+    };
+    let (delay_s, hold_s, start_s) = (0.0301, 0.0597, 0.0123);
+    let grown = held.grown_from("input_delay", &[delay_s], &sizes);
+    let apart = |values: &[f64], t_s: f64| {
+        let renewals = (t_s - values[1]) / values[0] - (t_s - start_s) / hold_s;
+        (renewals - renewals.round()).abs()
+    };
+    let is_near = |values: &Vec<f64>| [0.0, 9.0].iter().all(|t_s| apart(values, *t_s) <= 0.25);
+    assert!(grown.iter().any(is_near));
+    let short_s = 0.4 * sizes.time_step_s;
+    assert!(
+        held.grown_from("input_delay", &[short_s], &sizes)
+            .is_empty()
+    );
+    assert!(
+        held.grown_from("sensor_delay", &[delay_s], &sizes)
+            .is_empty()
+    );
+}
+
 /// A fit follows the begin and the length of holds: what they do is continuous in both.
 #[test]
 fn prop_held_input_moves_with_its_times() {

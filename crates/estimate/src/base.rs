@@ -232,18 +232,23 @@ impl Base<'_> {
         fit_with(self.problem, start, weights, false, Some(known))
     }
 
-    /// Change of the prediction of every run by each trial, divided by its share.
+    /// Change of the prediction of every run by each trial, divided by its share; in the place of an effect of the set, if one is given.
     pub(crate) fn columns(
         &self,
         candidate: &Candidate,
         trials: &[Trial],
+        in_place_of: Option<usize>,
     ) -> Result<Vec<Vec<Signals>>, EstimateError> {
         let estimate = &self.fit.estimate;
         let runs = self.problem.runs.len();
         let mut simulators = Vec::with_capacity(trials.len() * runs);
+        let stay = estimate.placed().enumerate();
+        let stay = stay.filter(|(i, _)| in_place_of != Some(*i));
+        let stay: Vec<&Placed> = stay.map(|(_, placed)| placed).collect();
         for (values, _) in trials {
             let trial = Placed::new(candidate.effect, candidate.at.clone(), values.clone());
-            let effects: Vec<Placed> = estimate.placed().chain([&trial]).cloned().collect();
+            let effects = stay.iter().copied().chain([&trial]);
+            let effects: Vec<Placed> = effects.cloned().collect();
             simulators.extend(self.problem.simulators(&effects, &self.simulators)?);
         }
         let jobs: Vec<Job<'_>> = simulators

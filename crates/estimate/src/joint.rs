@@ -51,7 +51,7 @@ pub fn joint_scores(
         };
         let trial: Vec<Trial> = trials(candidate, shape);
         // A trial from which the plant runs away explains nothing.
-        let found = base.columns(candidate, &trial).ok()?;
+        let found = base.columns(candidate, &trial, None).ok()?;
         Some((candidate, shape, sizes, found))
     });
     let mut columns: Vec<Column<'_>> = vec![];

@@ -20,7 +20,8 @@ pub fn score_outright(
     candidate: &Candidate,
     points: &[Vec<f64>],
 ) -> Result<Vec<Score>, EstimateError> {
-    score_each(base, candidate, points, whole, |values, in_common, own| {
+    let alone = (candidate, None);
+    score_each(base, alone, points, whole, |values, in_common, own| {
         base.score_resized(candidate, values, in_common, own.start)
     })
 }

@@ -67,9 +67,13 @@ pub fn score_shapes(
     shapes: &[Vec<f64>],
 ) -> Result<Vec<Score>, EstimateError> {
     let wanted = |shape: &[f64]| trials(candidate, shape);
-    score_each(base, candidate, shapes, wanted, |shape, in_common, own| {
-        base.score_shape(candidate, shape, in_common, own)
-    })
+    score_each(
+        base,
+        (candidate, None),
+        shapes,
+        wanted,
+        |shape, in_common, own| base.score_shape(candidate, shape, in_common, own),
+    )
 }
 
 /// Scores one candidate at values that it has no need to grow to.
@@ -78,12 +82,34 @@ fn score_as_they_stand(
     candidate: &Candidate,
     points: &[Vec<f64>],
 ) -> Result<Vec<Score>, EstimateError> {
-    score_each(base, candidate, points, whole, |values, in_common, own| {
+    score_whole(base, (candidate, None), points)
+}
+
+/// Scores one candidate at values that it has no need to grow to, in the place of an effect of the set: what it explains of what that one
+/// leaves, whatever that one's values are. Best first.
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub fn score_in_place_of(
+    base: &Base<'_>,
+    index: usize,
+    candidate: &Candidate,
+    points: &[Vec<f64>],
+) -> Result<Vec<Score>, EstimateError> {
+    score_whole(base, (candidate, Some(index)), points)
+}
+
+fn score_whole(
+    base: &Base<'_>,
+    what: (&Candidate, Option<usize>),
+    points: &[Vec<f64>],
+) -> Result<Vec<Score>, EstimateError> {
+    score_each(base, what, points, whole, |values, in_common, own| {
         let column = Regressor {
             trial: own.start,
             run: None,
         };
-        base.score_as_it_stands(candidate, values, in_common, &[column])
+        base.score_as_it_stands(what.0, values, in_common, &[column])
     })
 }
 
@@ -92,11 +118,11 @@ pub(crate) fn whole(values: &[f64]) -> Vec<Trial> {
     vec![(values.to_vec(), 1.0)]
 }
 
-/// Scores of one candidate at many values, best first: the trials that each wants are simulated a few at a time, and scored by what they
+/// Scores of one candidate at many values, in the place of an effect of the set if one is given, best first: the trials that each wants are simulated a few at a time, and scored by what they
 /// have in common with the base and with each other.
 pub(crate) fn score_each(
     base: &Base<'_>,
-    candidate: &Candidate,
+    (candidate, in_place_of): (&Candidate, Option<usize>),
     points: &[Vec<f64>],
     trials: impl Fn(&[f64]) -> Vec<Trial>,
     scored: impl Fn(&[f64], &InCommon, Range<usize>) -> Option<Score>,
@@ -104,7 +130,7 @@ pub(crate) fn score_each(
     let mut scores = Vec::new();
     for few in points.chunks(SHAPES_TOGETHER) {
         let wanted: Vec<Vec<Trial>> = few.iter().map(|values| trials(values)).collect();
-        let in_common = base.in_common(&base.columns(candidate, &wanted.concat())?);
+        let in_common = base.in_common(&base.columns(candidate, &wanted.concat(), in_place_of)?);
         let mut first = 0;
         for (values, wanted) in few.iter().zip(wanted) {
             let own = first..first + wanted.len();

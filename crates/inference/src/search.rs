@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! wrong nominal parameters: those that are off once all are re-estimated
-//! single effects: by score; from many values; dynamics of parameters; what the best one grows into
+//! single effects: by score; from many values; dynamics of parameters; what the best ones grow into
 //! effects beside nominal parameters that are re-estimated
 //! pairs, sets of three: from the best sets so far, by score and from many values
 //! stretches of the records, each with a start of its own (multiple shooting)
-//! the best set: each effect removed, exchanged, grown, shrunk; one more added; rescaled; until it stays
+//! the best set: each effect removed, exchanged, shrunk; the best sets: grown, rescaled, one more added; until it stays
 //! ```
 //!
 //! A stage is left out where the best set leaves nothing but noise, or, if it is one of wrong parameters, less than an effect that is worth
@@ -24,7 +24,9 @@ use simgap_estimate::{
     Base, Candidate, EstimateError, Fit, FitOptions, Problem, Start, fit, linearise_at,
 };
 
-use crate::candidate_model::{CandidateModel, NominalPrior, is_nominal, name, rank};
+use crate::candidate_model::{
+    CandidateModel, INDISTINGUISHABLE, NominalPrior, is_nominal, name, rank,
+};
 use crate::extended::{Extended, Visited};
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
@@ -70,6 +72,12 @@ fn survivors_of(ranked: &[CandidateModel], most: usize) -> Vec<&CandidateModel> 
     new.extend(rest);
     new.truncate(most);
     new
+}
+
+/// Of each set the first.
+fn distinct(pool: &[CandidateModel]) -> impl Iterator<Item = &CandidateModel> {
+    let mut seen = BTreeSet::new();
+    pool.iter().filter(move |set| seen.insert(set.key()))
 }
 
 /// Told what is being done, and asked whether to go on.
@@ -241,11 +249,14 @@ impl<'a> Search<'a> {
         pool.extend(self.fit_dynamics_of_parameters(base, &pool, linear));
         rank(&mut pool);
         // What leaves little may still be the shadow of another cause.
-        if let Some(single) = pool.first().filter(|set| set.effects().len() == 1) {
-            let grown = self.grow(single, 0)?;
-            pool.extend(grown);
-            rank(&mut pool);
-        }
+        let best = pool.first().map(CandidateModel::log_posterior);
+        let leading = distinct(&pool).take_while(|set| {
+            best.is_some_and(|best| set.log_posterior() >= best - INDISTINGUISHABLE)
+        });
+        let singles = leading.filter(|set| set.effects().len() == 1);
+        let grown: Result<Vec<_>, _> = singles.map(|single| self.grow(single, 0)).collect();
+        pool.extend(grown?.concat());
+        rank(&mut pool);
         let mut is_settled = self.settle(&mut pool, 1)?;
         if let Some(recalibrated) = recalibrated
             && !is_settled
@@ -309,7 +320,7 @@ impl<'a> Search<'a> {
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
     pub fn refine(&self, pool: &mut Vec<CandidateModel>) -> Result<(), EstimateError> {
-        let rescaled = Extended::default();
+        let (rescaled, grown) = (Extended::default(), Extended::default());
         for _ in 0..ROUNDS {
             if self.is_spent() {
                 return Ok(());
@@ -319,16 +330,19 @@ impl<'a> Search<'a> {
             let Some(best) = pool.first().cloned() else {
                 return Ok(());
             };
-            let mut seen = BTreeSet::new();
-            let leading = pool.iter().filter(|set| seen.insert(set.key()));
-            let leading: Vec<CandidateModel> = leading.take(LEADING).cloned().collect();
+            let leading: Vec<CandidateModel> = distinct(pool).take(LEADING).cloned().collect();
             if !is_settled {
                 for set in leading.iter().filter(|set| !self.is_full(set)) {
                     pool.extend(self.extend(set, ADDED)?);
                 }
             }
+            for set in leading.iter().filter(|set| !grown.holds(set, 1)) {
+                grown.note(set, 1);
+                for i in 0..set.effects().len() {
+                    pool.extend(self.grow(set, i)?);
+                }
+            }
             for i in 0..best.effects().len() {
-                pool.extend(self.grow(&best, i)?);
                 pool.extend(self.shrink(&best, i));
                 if let Ok(smaller) = self.fit(&self.without(&best, i)) {
                     // Single effects of every kind are in the pool.

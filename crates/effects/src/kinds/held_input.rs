@@ -29,7 +29,9 @@ const LONG: [usize; 4] = [8, 10, 20, 50];
 const QUARTERS: usize = 4;
 /// Holds that lines of what is left tell, and how many places of the first one are tried of each.
 const CARRIERS: usize = 2;
-const PLACES: u32 = 8;
+const PLACES: usize = 8;
+/// How far twice a fitted delay is from the hold that it stands for, as a share.
+const FROM_DELAY: f64 = 0.015;
 
 /// Holds of a number of samples, the first one at so many places of it.
 fn of_samples(samples: usize, places: usize, scale: &SiteScale) -> Vec<Vec<f64>> {
@@ -43,6 +45,12 @@ fn short(scale: &SiteScale) -> impl Iterator<Item = Vec<f64>> + use<'_> {
     SHORT
         .into_iter()
         .flat_map(|samples| of_samples(samples, samples, scale))
+}
+
+/// The first one at so many places of a hold.
+fn placed(time_s: f64, places: usize) -> impl Iterator<Item = Vec<f64>> {
+    let share = move |place: usize| place as f64 / places as f64;
+    (0..places).map(move |place| vec![time_s, share(place) * time_s])
 }
 
 struct Hold {
@@ -155,8 +163,7 @@ impl Effect for HeldInput {
         let mut starts: Vec<Vec<f64>> = short(scale).collect();
         let carriers = scale.carriers_hz.into_iter().filter(|freq| *freq > 0.0);
         for time_s in carriers.take(CARRIERS).map(f64::recip) {
-            let place = |k: u32| time_s * f64::from(k) / f64::from(PLACES);
-            starts.extend((0..PLACES).map(|k| vec![time_s, place(k)]));
+            starts.extend(placed(time_s, PLACES));
         }
         starts
     }
@@ -167,6 +174,26 @@ impl Effect for HeldInput {
             .into_iter()
             .flat_map(|samples| of_samples(samples, QUARTERS, scale));
         short(scale).chain(long).collect()
+    }
+
+    /// A plant that is slow beside the hold sees a delay by half of it.
+    fn resembles(&self) -> &'static [&'static str] {
+        &["input_delay"]
+    }
+
+    /// Holds about twice a delay, by steps over which the last of a record slips by a quarter of a hold.
+    fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        let about_s = 2.0 * values[0];
+        if kind != "input_delay" || about_s <= scale.time_step_s {
+            return vec![];
+        }
+        let quarters = QUARTERS as f64;
+        let step_s = about_s * (about_s / scale.duration_s).min(1.0) / quarters;
+        let steps = (FROM_DELAY * about_s / step_s).ceil() as i32;
+        let times_s = (-steps..=steps).map(|k| about_s + f64::from(k) * step_s);
+        times_s
+            .flat_map(|time_s| placed(time_s, QUARTERS))
+            .collect()
     }
 
     /// A part of a hold is another hold, and none where it is shorter than a sample.

@@ -3,7 +3,9 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Effect, Placed};
-use simgap_estimate::{Base, EstimateError, Start, linearise_at, score_outright};
+use simgap_estimate::{
+    Base, Candidate, EstimateError, Start, linearise_at, score_in_place_of, score_outright,
+};
 use simgap_model::{GROUND, Location};
 
 use crate::candidate_model::{
@@ -15,6 +17,9 @@ use crate::search::Search;
 const STARTS: usize = 2;
 /// Single nominal parameters whose dynamics are tried.
 const LIMITS: usize = 4;
+/// What an effect grows into is fitted from the best of more values than this, by score.
+const MANY: usize = 12;
+const STARTS_OF_MANY: usize = 4;
 
 impl Search<'_> {
     /// The sets in which one effect has grown into one that contains it, turns into it or resembles it.
@@ -23,12 +28,26 @@ impl Search<'_> {
         base: &CandidateModel,
         index: usize,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        let starts = self.grown(base, index);
-        if starts.is_empty() {
+        let mut grown = self.grown(base, index);
+        if grown.iter().all(|(_, shapes)| shapes.is_empty()) {
             return Ok(vec![]);
         }
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
-        Ok(self.fit_all(&starts, &linear))
+        for (candidate, shapes) in &mut grown {
+            if shapes.len() > MANY {
+                let best = score_in_place_of(&linear, index, candidate, shapes)?;
+                let best = best.into_iter().take(STARTS_OF_MANY);
+                *shapes = best.map(|score| score.start.values).collect();
+            }
+        }
+        let starts = grown.into_iter().flat_map(|(candidate, shapes)| {
+            shapes.into_iter().map(move |values| {
+                let grown = Placed::new(candidate.effect, candidate.at.clone(), values);
+                let start = replace(&base.fit.estimate, index, grown.clone(), self.nominal);
+                without_limits(start, &grown, self.nominal)
+            })
+        });
+        Ok(self.fit_all(&starts.collect::<Vec<_>>(), &linear))
     }
 
     /// The sets in which one effect has shrunk to a special case it contains, or to what it turns into.
@@ -102,7 +121,8 @@ impl Search<'_> {
         self.fit_all(&starts.concat(), linear)
     }
 
-    fn grown(&self, base: &CandidateModel, index: usize) -> Vec<Start> {
+    /// What an effect of a set grows into, from which values.
+    fn grown(&self, base: &CandidateModel, index: usize) -> Vec<(&Candidate, Vec<Vec<f64>>)> {
         let old = &base.effects()[index];
         let kind = old.effect.kind();
         let larger = self
@@ -125,13 +145,9 @@ impl Search<'_> {
                 Some((candidate, self.space.scale_at(spring)?)).filter(|_| is_alike)
             });
         larger
-            .flat_map(|(candidate, scale)| {
+            .map(|(candidate, scale)| {
                 let shapes = candidate.effect.grown_from(kind, &old.values, &scale);
-                shapes.into_iter().map(move |values| {
-                    let grown = Placed::new(candidate.effect, candidate.at.clone(), values);
-                    let start = replace(&base.fit.estimate, index, grown.clone(), self.nominal);
-                    without_limits(start, &grown, self.nominal)
-                })
+                (candidate, shapes)
             })
             .collect()
     }

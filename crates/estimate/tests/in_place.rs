@@ -1,0 +1,52 @@
+//! Effects in the place of others.
+#![allow(clippy::unwrap_used)]
+
+use simgap_estimate::{FitOptions, fit, linearise_at, score_in_place_of};
+use simgap_model::Location;
+
+use crate::support::{OSCILLATOR, candidate, drive, model, noisy, placed, problem, start, truth};
+
+/// A set point that is renewed every 13.27 samples is fitted as a delay of half of that. What this leaves tells, of all holds about twice
+/// as long, the one that a fit finds the way from.
+#[test]
+fn verify_what_a_delay_leaves_tells_the_hold_it_stands_for() {
+    const STEP_S: f64 = 0.005;
+    const DURATION_S: f64 = 20.0;
+    let hold = [13.27 * STEP_S, 4.1 * STEP_S];
+    let at = Location::Input("u".into());
+    let model = model(OSCILLATOR);
+    let held = placed("held_input", at.clone(), &hold);
+    let samples = (DURATION_S / STEP_S) as usize;
+    let run = truth(
+        &model,
+        &[held],
+        drive(STEP_S, samples, 5.0),
+        STEP_S,
+        &[0.0; 2],
+    );
+    let count = samples as f64;
+    let spread = run.measured[0].iter().flatten().map(|y| y * y).sum::<f64>() / count;
+    let problem = problem(&model, noisy(&run, 0.003 * spread.sqrt(), 3));
+    let options = FitOptions::white(1);
+    let delay = placed("input_delay", at.clone(), &[0.5 * hold[0]]);
+    let late = fit(&problem, &start(vec![delay], vec![], &[0.0; 2]), &options).unwrap();
+    let delay = &late.estimate.effects[0];
+
+    let linear = linearise_at(&problem, &late, &options).unwrap();
+    let held = candidate("held_input", at.clone());
+    let sizes = problem.site_scale(&late, &at).unwrap();
+    let grown = held.effect.grown_from("input_delay", &delay.values, &sizes);
+    let best = score_in_place_of(&linear, 0, &held, &grown)
+        .unwrap()
+        .swap_remove(0);
+    assert!(best.gain > 10.0, "{}", best.gain);
+    // By the end of the record the grid has not slipped by half of a hold.
+    let slips = DURATION_S * (best.start.values[0] / hold[0] - 1.0).abs();
+    assert!(slips < 0.5 * hold[0], "{:?}", best.start.values);
+
+    let from = start(vec![best.start], vec![], &late.estimate.initial[0]);
+    let found = fit(&problem, &from, &options).unwrap();
+    let values = &found.estimate.effects[0].values;
+    assert!((values[0] / hold[0] - 1.0).abs() < 3e-4, "{values:?}");
+    assert!(found.misfit < late.misfit - best.gain, "{values:?}");
+}
