@@ -43,16 +43,11 @@ pub(crate) fn decide(
     let problem = search.problem;
     let std = problem.output_std();
     let given = &prepared.nominal.variance;
-    // What is worth a name is a matter of the gap that re-estimated parameters leave.
-    let remaining = prepared.recalibrated.variance.iter().zip(given).zip(&std);
-    let rms: Vec<f64> = remaining
-        .map(|((left, given), std)| left.min(*given).min(std * std).sqrt())
-        .collect();
     let base = match pool.iter().find(|set| set.effects().is_empty()) {
         Some(base) => base.clone(),
         None => search.fit(first)?,
     };
-    let posterior = model_posterior(search, pool, &rms)?;
+    let posterior = model_posterior(search, pool)?;
     let best = posterior.best().unwrap_or(&base).clone();
     let gap = Gap::of(given, &best.fit.variance, &search.noise_of(&best), &std);
     let other = other(search, &base, &best, &gap)?;
@@ -68,7 +63,7 @@ pub(crate) fn decide(
         let law = decision.other.law.as_ref();
         decision.start = law.map_or(&base.fit, |law| &law.fit).estimate.clone();
     } else if best.effects().is_empty() {
-        small_errors(search, first, &rms, &mut decision)?;
+        small_errors(search, first, &mut decision)?;
     } else if are_parameters(best.effects().iter()) {
         decision.status = Status::Parameters;
     } else {
@@ -81,7 +76,6 @@ pub(crate) fn decide(
 fn small_errors(
     search: &Search<'_>,
     first: &Start,
-    gap: &[f64],
     decision: &mut Decision,
 ) -> Result<(), DiagnoseError> {
     let stated: Vec<f64> = first
@@ -97,7 +91,7 @@ fn small_errors(
     })?;
     let mut pool = parameters.run(&exact)?;
     parameters.refine(&mut pool)?;
-    let posterior = model_posterior(&parameters, pool, gap)?;
+    let posterior = model_posterior(&parameters, pool)?;
     let Some(best) = posterior.best().filter(|best| !best.effects().is_empty()) else {
         return Ok(());
     };

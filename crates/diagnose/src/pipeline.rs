@@ -132,7 +132,8 @@ pub fn diagnose<R: Borrow<Record>>(
         progress,
         is_spent: &is_spent,
     };
-    let mut search = Search::new(&prepared.excerpt, &noise, space, budget);
+    let gap = prepared.gap();
+    let mut search = Search::new(&prepared.excerpt, &noise, space, &gap, budget);
     let base = search.fit(&start)?;
     let pool = search.run(&base)?;
     // The colour of what the set leaves that leaves least, once and for all sets.

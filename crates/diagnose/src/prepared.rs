@@ -18,6 +18,19 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
+    /// The gap that re-estimated parameters leave, of the model as given at most, and of the motion at most: rms of each channel.
+    pub(crate) fn gap(&self) -> Vec<f64> {
+        let std = self.excerpt.output_std();
+        let left = self
+            .recalibrated
+            .variance
+            .iter()
+            .zip(&self.nominal.variance);
+        left.zip(std)
+            .map(|((left, given), std)| left.min(*given).min(std * std).sqrt())
+            .collect()
+    }
+
     /// Minus the log-likelihood of re-estimated parameters under the given options.
     pub(crate) fn misfit_of_parameters(&self, options: &FitOptions) -> f64 {
         let held = FitOptions {

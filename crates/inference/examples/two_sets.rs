@@ -46,7 +46,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         progress: &|_| {},
         is_spent: &|| false,
     };
-    let search = Search::new(&problem, &noise, space, budget);
+    let gap: Vec<f64> = baseline.variance.iter().map(|v| v.sqrt()).collect();
+    let search = Search::new(&problem, &noise, space, &gap, budget);
     let kind = find("damping_error").ok_or("not in the catalogue")?;
     let at = Location::Between(["table".into(), "ground".into()]);
     let damping = Placed::new(kind, at, vec![1.1]);
@@ -54,8 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for effect in [spring(1.05)?, damping] {
         sets.push(search.fit(&add(&nothing, effect))?);
     }
-    let gap: Vec<f64> = baseline.variance.iter().map(|v| v.sqrt()).collect();
-    let posterior = model_posterior(&search, sets, &gap)?;
+    let posterior = model_posterior(&search, sets)?;
     for (set, probability) in posterior.sets.iter().zip(&posterior.probabilities) {
         let effects: Vec<String> = set.effects().iter().map(name).collect();
         println!(

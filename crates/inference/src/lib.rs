@@ -6,7 +6,7 @@
 //! catalogue x places     -> sets and their prior                       model_space
 //! proposals of sets      -> fits; a search with budgets                proposals, search, stretches, ending
 //! ln Z + ln p of each    -> computed once, never changed               marginal_likelihood
-//! posterior over sets    -> effects, classes, relevance                model_posterior
+//! posterior over sets    -> effects, classes, relevance                model_posterior, relevance
 //! a law of any shape, values that agree -> the probability of another cause     other, coincidence
 //! ```
 //!
@@ -28,6 +28,7 @@ pub mod noise_model;
 mod other;
 mod proposals;
 mod recolour;
+mod relevance;
 mod search;
 mod shapley;
 mod stage;

@@ -12,23 +12,13 @@
 //! be told apart; an effect that can be left out within them cannot be told from none, and is not named.
 
 use simgap_effects::{Equivalent, Placed, same_place};
-use simgap_estimate::{EstimateError, FitOptions, fit};
+use simgap_estimate::EstimateError;
 
 use crate::asked::Asked;
-use crate::candidate_model::{
-    CandidateModel, INDISTINGUISHABLE, is_bent, is_nominal, name, rank, remove,
-};
-use crate::gap::RELEVANT_SHARE;
-use crate::motion;
-use crate::noise_model::{NOISE_KNOWN, stored_rounding_variance};
+use crate::candidate_model::{CandidateModel, INDISTINGUISHABLE, is_nominal, name, rank, remove};
 use crate::search::Search;
 use crate::shapley::shapley_values;
 
-/// Practical relevance: an effect that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel is not worth a
-/// name, nor one that closes no more in any than a tenth of what it is rounded by ([`NOISE_KNOWN`]), for rounding follows the
-/// motion, nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is
-/// expected to explain; nor one beside others that explains less than this share of what is left above the noise, mean square.
-const OF_REST: f64 = 0.5;
 /// Log odds beyond which a set does not count.
 const NEGLIGIBLE: f64 = 12.0;
 
@@ -90,25 +80,19 @@ impl ModelPosterior {
     }
 }
 
-/// Weighs the sets of a pool, all fitted under one noise model. `gap` is the rms of the gap of each channel.
+/// Weighs the sets of a pool, all fitted under one noise model.
 ///
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated.
 pub fn model_posterior(
     search: &Search<'_>,
     pool: Vec<CandidateModel>,
-    gap: &[f64],
 ) -> Result<ModelPosterior, EstimateError> {
-    let relevance = Relevance {
-        gap: gap.to_vec(),
-        motion: search.problem.output_std(),
-        rounded: stored_rounding_variance(search.problem),
-    };
-    let asked = relevance.ask(search, pool)?;
+    let asked = search.ask(pool)?;
     let shares = match asked.best() {
         Some(best) => (0..best.effects().len())
-            .zip(explained(search, &relevance, &asked, best)?)
-            .map(|(i, explains)| share(search, &relevance, &asked, best, (i, explains)))
+            .zip(explained(search, &asked, best)?)
+            .map(|(i, explains)| share(search, &asked, best, (i, explains)))
             .collect::<Result<Vec<_>, EstimateError>>()?,
         None => vec![],
     };
@@ -132,96 +116,25 @@ pub fn model_posterior(
     Ok(posterior)
 }
 
-/// What is worth a name.
-struct Relevance {
-    /// Gap of each channel, rms.
-    gap: Vec<f64>,
-    /// Motion of each channel, rms.
-    motion: Vec<f64>,
-    /// What each channel is rounded by, mean square.
-    rounded: Vec<f64>,
-}
-
-impl Relevance {
-    /// Share of the gap that a set closes and another does not, in the channel that profits most.
-    fn closes(&self, with: &CandidateModel, without: &CandidateModel) -> f64 {
-        let channels = closed(with, without).zip(&self.gap);
-        channels
-            .map(|(closed, gap)| closed.sqrt() / gap)
-            .fold(0.0, f64::max)
-    }
-
-    /// Whether what a set has beyond another is worth a name. `moved` is what the effect moves each output by.
-    fn is_relevant(
-        &self,
-        search: &Search<'_>,
-        with: &CandidateModel,
-        without: &CandidateModel,
-        moved: &[f64],
-    ) -> bool {
-        // Values that no prior holds are no set.
-        if without.log_posterior() == f64::NEG_INFINITY {
-            return true;
-        }
-        // Of two sets that cannot be told apart the smaller is the answer.
-        if with.log_posterior() - without.log_posterior() < INDISTINGUISHABLE {
-            return false;
-        }
-        // Nominal parameters that are bent to stand for the effect do what it does.
-        if is_bent(without) && !is_bent(with) {
-            return true;
-        }
-        // What comes late in one channel may show in another: where records begin follows the late one.
-        if !motion::is_enough(moved, &self.motion).any(|enough| enough) {
-            return false;
-        }
-        let noise = search
-            .noise_of(with)
-            .into_iter()
-            .zip(search.unexplainable(without));
-        let left = without.fit.variance.iter().zip(noise);
-        let channels = closed(with, without).zip(left);
-        let mut channels = channels.zip(self.gap.iter().zip(&self.rounded));
-        let is_first = without.effects().is_empty();
-        channels.any(|((closed, (left, (noise, floor))), (gap, rounded))| {
-            let stands_out = *left > NOISE_KNOWN * floor;
-            stands_out
-                && closed > (NOISE_KNOWN - 1.0) * rounded
-                && closed > (RELEVANT_SHARE * gap).powi(2)
-                && (is_first || closed > OF_REST * (left - noise))
-        })
-    }
-
+/// Where sets are asked what they stand for.
+impl Search<'_> {
     /// What each set stands for, as far down as sets count.
-    fn ask(
-        &self,
-        search: &Search<'_>,
-        mut pool: Vec<CandidateModel>,
-    ) -> Result<Asked, EstimateError> {
+    fn ask(&self, mut pool: Vec<CandidateModel>) -> Result<Asked, EstimateError> {
         // Of each set its best fit.
         rank(&mut pool);
         let mut asked = Asked::default();
         asked.extend(pool);
         while let Some(index) = asked.next(NEGLIGIBLE) {
             let set = asked.sets[index].clone();
-            let smaller = self.without_irrelevant(search, &set, &mut asked)?;
+            let smaller = self.without_irrelevant(&set, &mut asked)?;
             asked.note(index, smaller.unwrap_or(index));
         }
         Ok(asked)
     }
 
-    /// Share of the motion that a set leaves, mean square.
-    fn left(&self, set: &CandidateModel) -> f64 {
-        let channels = set.fit.variance.iter().zip(&self.motion);
-        channels
-            .map(|(left, motion)| left / (motion * motion))
-            .sum()
-    }
-
     /// Where the set is that lacks an irrelevant effect of a set, or has a special case of it; none where all are relevant.
     fn without_irrelevant(
         &self,
-        search: &Search<'_>,
         set: &CandidateModel,
         asked: &mut Asked,
     ) -> Result<Option<usize>, EstimateError> {
@@ -231,28 +144,24 @@ impl Relevance {
             (0..set.effects().len()).partition(is_known);
         order.extend(unknown);
         for i in order {
-            // A wrong nominal parameter is told however little it moves: the others bend where it is kept as given.
-            let moved = match is_nominal(&set.effects()[i]) {
-                true => vec![f64::INFINITY; self.motion.len()],
-                false => moved(search, set, i)?,
-            };
-            let from_here = || search.fit(&remove(&set.fit.estimate, i, search.nominal));
+            let moved = self.moved(set, i)?;
+            let from_here = || self.fit(&remove(&set.fit.estimate, i, self.nominal));
             let known = asked.places.get(&set.key_without(i)).copied();
             let place = match known {
                 Some(known) => known,
                 None => asked.place(from_here()?),
             };
-            let mut is_relevant = self.is_relevant(search, set, &asked.sets[place], &moved);
+            let mut is_relevant = self.is_relevant(set, &asked.sets[place], &moved);
             // A search that ended early may have left it elsewhere.
             if is_relevant && known.is_some() && asked.improve(place, from_here()?) {
-                is_relevant = self.is_relevant(search, set, &asked.sets[place], &moved);
+                is_relevant = self.is_relevant(set, &asked.sets[place], &moved);
             }
             if !is_relevant {
                 return Ok(Some(place));
             }
             // A law beyond a special case of it is held to the same.
-            for special in search.shrink(set, i) {
-                let is_relevant = self.is_relevant(search, set, &special, &moved);
+            for special in self.shrink(set, i) {
+                let is_relevant = self.is_relevant(set, &special, &moved);
                 let place = asked.place(special);
                 if !is_relevant {
                     return Ok(Some(place));
@@ -261,33 +170,6 @@ impl Relevance {
         }
         Ok(None)
     }
-}
-
-/// What one effect of a set moves each output by, with everything else as it is, rms.
-fn moved(
-    search: &Search<'_>,
-    set: &CandidateModel,
-    index: usize,
-) -> Result<Vec<f64>, EstimateError> {
-    let held = FitOptions {
-        most_steps: 0,
-        ..search.options.clone()
-    };
-    let rest = fit(
-        search.problem,
-        &remove(&set.fit.estimate, index, search.nominal),
-        &held,
-    )?;
-    Ok(motion::between(&set.fit, &rest))
-}
-
-/// Squared discrepancy of each channel that a set explains and another does not.
-fn closed<'a>(
-    with: &'a CandidateModel,
-    without: &'a CandidateModel,
-) -> impl Iterator<Item = f64> + 'a {
-    let variances = without.fit.variance.iter().zip(&with.fit.variance);
-    variances.map(|(poorer, better)| (poorer - better).max(0.0))
 }
 
 /// What one effect of the best set is to it.
@@ -302,7 +184,6 @@ struct Share {
 
 fn share(
     search: &Search<'_>,
-    relevance: &Relevance,
     asked: &Asked,
     best: &CandidateModel,
     (index, explains): (usize, f64),
@@ -310,7 +191,7 @@ fn share(
     let without = asked.part(search, best, &all_but(best, index))?;
     Ok(Share {
         worth: best.log_posterior() - without.log_posterior(),
-        closes: relevance.closes(best, &without),
+        closes: search.closes(best, &without),
         explains,
     })
 }
@@ -371,6 +252,15 @@ fn effect(
     }
 }
 
+/// Share of the motion that a set leaves, mean square.
+fn left_of(search: &Search<'_>, set: &CandidateModel) -> f64 {
+    let motion = search.problem.output_std();
+    let channels = set.fit.variance.iter().zip(&motion);
+    channels
+        .map(|(left, motion)| left / (motion * motion))
+        .sum()
+}
+
 /// The places of all effects of a set but one.
 fn all_but(set: &CandidateModel, index: usize) -> Vec<usize> {
     (0..set.effects().len()).filter(|i| *i != index).collect()
@@ -380,14 +270,13 @@ fn all_but(set: &CandidateModel, index: usize) -> Vec<usize> {
 /// the set, its wrong nominal parameters as they are; of such a parameter what the others leave without it.
 fn explained(
     search: &Search<'_>,
-    relevance: &Relevance,
     asked: &Asked,
     set: &CandidateModel,
 ) -> Result<Vec<f64>, EstimateError> {
     let (parameters, laws): (Vec<usize>, Vec<usize>) =
         (0..set.effects().len()).partition(|i| is_nominal(&set.effects()[*i]));
     let left = |part: &[usize]| -> Result<f64, EstimateError> {
-        Ok(relevance.left(asked.part(search, set, part)?.as_ref()))
+        Ok(left_of(search, asked.part(search, set, part)?.as_ref()))
     };
     let mut explained = vec![0.0; set.effects().len()];
     let of_laws = shapley_values(laws.len(), |some| {
@@ -399,7 +288,7 @@ fn explained(
         explained[*law] = value;
     }
     for parameter in parameters {
-        explained[parameter] = left(&all_but(set, parameter))? - relevance.left(set);
+        explained[parameter] = left(&all_but(set, parameter))? - left_of(search, set);
     }
     Ok(explained)
 }

@@ -98,6 +98,8 @@ pub struct Search<'a> {
     pub options: FitOptions,
     /// What there is.
     pub space: ModelSpace,
+    /// The gap that is to be explained, rms of each channel.
+    pub(crate) gap: Vec<f64>,
     pub(crate) nominal: NominalPrior,
     /// When to stop.
     pub budget: Budget<'a>,
@@ -105,12 +107,13 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// A search for every kind.
+    /// A search for every kind. What is worth a name is a matter of the gap, rms of each channel.
     #[must_use]
     pub fn new(
         problem: &'a Problem,
         noise: &NoiseModel,
         space: ModelSpace,
+        gap: &[f64],
         budget: Budget<'a>,
     ) -> Search<'a> {
         Search {
@@ -118,6 +121,7 @@ impl<'a> Search<'a> {
             noise: noise.clone(),
             options: noise.search_options(),
             space,
+            gap: gap.to_vec(),
             nominal: NominalPrior::Wrong,
             budget,
             visited: Visited::default(),
@@ -134,6 +138,7 @@ impl<'a> Search<'a> {
             space: self
                 .space
                 .of_families(|family| family == Family::NominalParameter),
+            gap: self.gap.clone(),
             nominal: NominalPrior::Stated(stated_std),
             budget: self.budget,
             visited: Visited::default(),
@@ -330,7 +335,10 @@ impl<'a> Search<'a> {
             let Some(best) = pool.first().cloned() else {
                 return Ok(());
             };
-            let leading: Vec<CandidateModel> = distinct(pool).take(LEADING).cloned().collect();
+            let leading = distinct(pool)
+                .filter(|set| !(is_settled && self.merely_refines(set, &best)))
+                .take(LEADING);
+            let leading: Vec<CandidateModel> = leading.cloned().collect();
             if !is_settled {
                 for set in leading.iter().filter(|set| !self.is_full(set)) {
                     pool.extend(self.extend(set, ADDED)?);
@@ -358,7 +366,10 @@ impl<'a> Search<'a> {
             }
             pool.retain(|set| set.log_marginal_likelihood.is_finite());
             rank(pool);
-            let stays = pool.first().is_none_or(|first| first.key() == best.key());
+            let stays = pool.first().is_none_or(|first| {
+                let refines = is_settled && self.merely_refines(first, &best);
+                refines || first.key() == best.key()
+            });
             if stays {
                 return Ok(());
             }

@@ -85,7 +85,13 @@ fn verify_a_body_at_rest_in_its_play_is_found_from_afar() {
     };
     let mut astray = 0;
     for state in [[0.02, 0.0], [-0.02, 0.0], [0.0, 0.2], [0.0, -0.2]] {
-        let mut search = Search::new(&problem, &noise, space.clone(), budget);
+        let mut search = Search::new(
+            &problem,
+            &noise,
+            space.clone(),
+            &problem.output_std(),
+            budget,
+        );
         let start = Start {
             effects: vec![play(1.4 * PLAY_M)],
             nominal: vec![],

@@ -10,7 +10,8 @@ use simgap_estimate::{
 use simgap_model::Location;
 
 use crate::candidate_model::{
-    CandidateModel, INDISTINGUISHABLE, add_scored, is_nominal, is_of, name, prior_score, rank,
+    CandidateModel, INDISTINGUISHABLE, add_scored, is_bent, is_nominal, is_of, name, prior_score,
+    rank,
 };
 use crate::motion;
 use crate::search::{FITTED, Search};
@@ -61,12 +62,28 @@ impl Search<'_> {
         let least = set.log_posterior() + INDISTINGUISHABLE;
         for few in self.worth_a_name(set, &linear).chunks(FITTED[1]) {
             let fitted = self.fit_steps(few, &linear, self.options.most_steps);
-            if fitted.iter().any(|with| with.log_posterior() > least) {
-                return Ok(true);
+            for with in fitted.iter().filter(|with| with.log_posterior() > least) {
+                // Of several causes that bent nominal parameters stand for, one alone leaves them bent.
+                if is_bent(set) || self.is_last_relevant(with, set)? {
+                    return Ok(true);
+                }
             }
         }
         self.visited.unpromising.note(set, 0);
         Ok(false)
+    }
+
+    /// Whether the last effect of a set, which another does not hold, is worth a name.
+    fn is_last_relevant(
+        &self,
+        with: &CandidateModel,
+        without: &CandidateModel,
+    ) -> Result<bool, EstimateError> {
+        let Some(last) = with.effects().len().checked_sub(1) else {
+            return Ok(false);
+        };
+        let moved = self.moved(with, last)?;
+        Ok(self.is_relevant(with, without, &moved))
     }
 
     /// Starts of a set with one more effect, each of which pays for itself by its score and moves an output by enough.

@@ -11,15 +11,13 @@ use simgap_model::{GROUND, Location};
 use crate::candidate_model::{
     CandidateModel, NominalPrior, add_scored, is_nominal, name, remove, replace,
 };
+use crate::proposals::add::FINISHED;
 use crate::search::Search;
 
 /// Hidden masses are fitted from this many of the values at which they act as the parameter does.
 const STARTS: usize = 2;
 /// Single nominal parameters whose dynamics are tried.
 const LIMITS: usize = 4;
-/// What an effect grows into is fitted from the best of more values than this, by score.
-const MANY: usize = 12;
-const STARTS_OF_MANY: usize = 4;
 
 impl Search<'_> {
     /// The sets in which one effect has grown into one that contains it, turns into it or resembles it.
@@ -33,10 +31,12 @@ impl Search<'_> {
             return Ok(vec![]);
         }
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
+        // What would not all be fitted the whole way is fitted from the best values, by score.
+        let [few, more] = FINISHED;
         for (candidate, shapes) in &mut grown {
-            if shapes.len() > MANY {
+            if shapes.len() > few + more {
                 let best = score_in_place_of(&linear, index, candidate, shapes)?;
-                let best = best.into_iter().take(STARTS_OF_MANY);
+                let best = best.into_iter().take(few);
                 *shapes = best.map(|score| score.start.values).collect();
             }
         }

@@ -114,6 +114,7 @@ impl Search<'_> {
             problem,
             options: options.clone(),
             space: self.laws_in(problem, &parameters)?,
+            gap: self.gap.clone(),
             nominal: self.nominal,
             budget: self.budget,
             visited: Visited::default(),

@@ -49,6 +49,7 @@ impl Search<'_> {
             space: self
                 .space
                 .of_families(|family| family != Family::NominalParameter),
+            gap: self.gap.clone(),
             visited: Visited::default(),
             ..*self
         };

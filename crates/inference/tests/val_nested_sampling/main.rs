@@ -75,7 +75,13 @@ impl Solved {
         };
         let effects = case.effects.iter().cloned();
         let start = effects.fold(nothing, |start, effect| add(&start, effect));
-        let mut search = Search::new(&problem, &noise, space.clone(), budget);
+        let mut search = Search::new(
+            &problem,
+            &noise,
+            space.clone(),
+            &problem.output_std(),
+            budget,
+        );
         let first = search.fit(&start).unwrap();
         search.options = noise.with_colour_of(&first.fit).search_options();
         let set = search.fit(&first.fit.estimate).unwrap();
@@ -110,7 +116,8 @@ impl Solved {
             progress: &|_| {},
             is_spent: &|| false,
         };
-        let mut search = Search::new(&self.problem, &noise, self.space.clone(), budget);
+        let gap = self.problem.output_std();
+        let mut search = Search::new(&self.problem, &noise, self.space.clone(), &gap, budget);
         search.options = noise.final_options();
         let set = search.fit(start).ok()?;
         let mut problem = self.problem.with_runs(self.problem.runs.clone());
