@@ -63,8 +63,7 @@ impl Search<'_> {
         for few in self.worth_a_name(set, &linear).chunks(FITTED[1]) {
             let fitted = self.fit_steps(few, &linear, self.options.most_steps);
             for with in fitted.iter().filter(|with| with.log_posterior() > least) {
-                // Of several causes that bent nominal parameters stand for, one alone leaves them bent.
-                if is_bent(set) || self.is_last_relevant(with, set)? {
+                if self.is_last_relevant(with, set)? {
                     return Ok(true);
                 }
             }
@@ -82,6 +81,10 @@ impl Search<'_> {
         let Some(last) = with.effects().len().checked_sub(1) else {
             return Ok(false);
         };
+        // Of several wrong parameters that the others are bent by, one alone leaves them bent.
+        if is_bent(without) && is_nominal(&with.effects()[last]) {
+            return Ok(true);
+        }
         let moved = self.moved(with, last)?;
         Ok(self.is_relevant(with, without, &moved))
     }
