@@ -1,11 +1,15 @@
 //! Noise of the sensors in what a set leaves.
 //!
 //! ```text
-//! r_n = a r_{n−1} + w_n,   0 ≤ a < 1,   w white                            (1)
+//! r_n = a r_{n−1} + w_n − b w_{n−1},   0 ≤ b ≤ a < 1,   w white              (1)
+//! c_{k+1} = a c_k for k ≥ 1,   b / (1 + b²) = (a c_0 − c_1) / ((1 + a²) c_0 − 2 a c_1)     (2)
 //! ```
 //!
-//! Where a discrepancy is (1), all of it is noise: of a sensor, its filter or its amplifier. Where it is not, the white
-//! part of it is, which differences of neighbouring samples tell.
+//! Where a discrepancy is (1), all of it is noise: of a sensor and its filter or amplifier (b = 0), with white noise of the converter
+//! behind it, which b stands for. (2) is what the autocovariances c_k of (1) say of a and b. Where a discrepancy is not (1), the white part
+//! of it is noise, which differences of neighbouring samples tell.
+//!
+//! Reference: \[Ljung1999\], chapter 4.
 
 use simgap_effects::{Action, Placed};
 use simgap_estimate::Problem;
@@ -13,10 +17,14 @@ use simgap_model::Location;
 use simgap_signal::correlation::{autocorrelation, effective_sample_count};
 use simgap_signal::noise::white_noise_std;
 
+use super::NOISE_KNOWN;
+
 /// Share of independent samples from which w of (1) is white.
 const WHITE: f64 = 0.8;
 /// Mean size of w of (1) over its rms, at least: 0.80 for normal noise, small for a few jumps among many small steps.
 const EVEN: f64 = 0.7;
+/// Lags of (2).
+const LAGS: usize = 10;
 /// Largest a of (1): a discrepancy that is correlated over more than ten samples is a motion.
 const MOST_COLOUR: f64 = 0.92;
 
@@ -62,20 +70,56 @@ fn variance_of_step(step: Option<f64>) -> f64 {
 /// Whether a discrepancy is noise of a sensor and nothing else, (1).
 #[must_use]
 pub fn is_sensor_noise(discrepancy: &[f64]) -> bool {
-    let Ok(correlation) = autocorrelation(discrepancy, 1) else {
+    let Ok(correlation) = autocorrelation(discrepancy, LAGS.min(discrepancy.len() / 2)) else {
         return false;
     };
     let colour = correlation.get(1).copied().unwrap_or(1.0).max(0.0);
-    let innovations: Vec<f64> = discrepancy
-        .windows(2)
-        .map(|pair| pair[1] - colour * pair[0])
-        .collect();
-    let count = innovations.len() as f64;
-    let independent = effective_sample_count(&innovations).unwrap_or(0.0);
-    let mean = innovations.iter().map(|w| w.abs()).sum::<f64>() / count;
-    let square = innovations.iter().map(|w| w * w).sum::<f64>() / count;
-    let is_even = mean > EVEN * square.sqrt();
-    colour < MOST_COLOUR && independent > WHITE * count && is_even
+    if colour < MOST_COLOUR && is_white(&innovations(discrepancy, [colour, 0.0])) {
+        return true;
+    }
+    let [colour, white] = filtered_and_white(&correlation);
+    let left = innovations(discrepancy, [colour, white]);
+    colour < MOST_COLOUR && is_white(&left)
+}
+
+/// a and b by (2), a from all lags by least squares.
+fn filtered_and_white(correlation: &[f64]) -> [f64; 2] {
+    let pairs = || correlation.windows(2).skip(1);
+    let product: f64 = pairs().map(|pair| pair[0] * pair[1]).sum();
+    let square: f64 = pairs().map(|pair| pair[0] * pair[0]).sum();
+    let colour = (product / square).clamp(0.0, 1.0);
+    let first = correlation.get(1).copied().unwrap_or(0.0);
+    let share = (colour - first) / (1.0 + colour * colour - 2.0 * colour * first);
+    // The root within 0 to 1; at half there is no other.
+    let share = share.clamp(0.0, 0.5);
+    let white = 2.0 * share / (1.0 + (1.0 - 4.0 * share * share).sqrt());
+    [colour, white.min(colour)]
+}
+
+/// w of (1) for a and b.
+fn innovations(discrepancy: &[f64], [colour, white]: [f64; 2]) -> Vec<f64> {
+    let mut last = 0.0;
+    let pairs = discrepancy.windows(2);
+    let next = pairs.map(|pair| {
+        last = pair[1] - colour * pair[0] + white * last;
+        last
+    });
+    next.collect()
+}
+
+/// Whether values are white, and not a few jumps among small steps: neither is their mean known by fewer samples, nor are they told ahead by
+/// the last few, of which the share Σ ρ_k² of their variance is told. Correlations of what rings add up to nothing.
+fn is_white(values: &[f64]) -> bool {
+    let count = values.len() as f64;
+    let independent = effective_sample_count(values).unwrap_or(0.0);
+    let mean = values.iter().map(|w| w.abs()).sum::<f64>() / count;
+    let square = values.iter().map(|w| w * w).sum::<f64>() / count;
+    let told_ahead = autocorrelation(values, LAGS.min(values.len() / 2)).map_or(1.0, |rho| {
+        // By chance as many parts of the count as there are lags.
+        rho.iter().skip(1).map(|rho| rho * rho - 1.0 / count).sum()
+    });
+    let is_new = told_ahead < NOISE_KNOWN - 1.0;
+    independent > WHITE * count && is_new && mean > EVEN * square.sqrt()
 }
 
 /// Variance of the sensor's noise in each channel of discrepancies, over all runs.
@@ -176,6 +220,47 @@ mod tests {
             let own = noise.iter().map(|r| r * r).sum::<f64>() / 6000.0;
             let found = noise_variance(&[vec![noise]], &[false])[0];
             assert!((found / own - 1.0).abs() < 1e-12, "{colour}");
+        }
+    }
+
+    #[test]
+    fn verify_white_noise_beside_that_of_a_filter_counts_in_full() {
+        for colour in [0.4, 0.65, 0.85] {
+            let all = white(12_000);
+            let (slow, fast) = all.split_at(6000);
+            let mut noise = slow.to_vec();
+            for n in 1..noise.len() {
+                noise[n] += colour * noise[n - 1];
+            }
+            // As much of the one as of the other.
+            let size = (1.0 - colour * colour).sqrt();
+            let both = noise
+                .iter()
+                .zip(fast)
+                .map(|(slow, fast)| size * slow + fast);
+            let both: Vec<f64> = both.collect();
+            let correlation = autocorrelation(&both, LAGS).unwrap();
+            let [found, _] = filtered_and_white(&correlation);
+            assert!((found - colour).abs() < 0.1, "{found} for {colour}");
+            assert!(is_sensor_noise(&both), "{colour}");
+        }
+    }
+
+    /// What a resonator leaves that a broadband force moves, beside as much white noise.
+    #[test]
+    fn a_resonance_is_no_noise() {
+        for samples in [8.0, 20.0, 60.0] {
+            let all = white(12_000);
+            let (force, noise) = all.split_at(6000);
+            let (angle, decay) = (std::f64::consts::TAU / samples, 0.97_f64);
+            let mut motion = force.to_vec();
+            for n in 2..motion.len() {
+                motion[n] +=
+                    2.0 * decay * angle.cos() * motion[n - 1] - decay * decay * motion[n - 2];
+            }
+            let own = motion.iter().map(|x| x * x).sum::<f64>() / 6000.0;
+            let left = motion.iter().zip(noise).map(|(x, w)| x / own.sqrt() + w);
+            assert!(!is_sensor_noise(&left.collect::<Vec<f64>>()), "{samples}");
         }
     }
 
