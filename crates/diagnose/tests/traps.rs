@@ -187,7 +187,7 @@ fn verify_what_is_common_to_all_channels_is_not_blamed_on_each() {
         named(&known),
         [("input_delay".into(), Location::Input("u".into()))]
     );
-    let outcome = diagnosed(&truth, &["input_delay", "input_lag"]);
+    let outcome = diagnosed(&truth, &["input_delay", "input_lag", "held_input"]);
     let verdict = &outcome.diagnosis.verdict;
     assert_eq!(verdict.status, Status::Unknown, "{verdict:?}");
 }
