@@ -225,6 +225,40 @@ fn verify_flexible_support_starts_at_lines() {
     }
 }
 
+/// The lines of both modes of a mass on a spring and a hidden mode of it tell that one: a mass on the mass, or a support under the spring.
+#[test]
+fn verify_two_lines_tell_a_hidden_mode() {
+    let (mass, stiffness) = (2.0, 808.0);
+    let lines = |sum: f64, product: f64| {
+        let root = (0.25 * sum * sum - product).sqrt();
+        [0.5 * sum + root, 0.5 * sum - root].map(|square| square.sqrt() / TAU)
+    };
+    let told = |kind: &str, [high, low]: [f64; 2], wanted: [f64; 2]| {
+        let sizes = SiteScale {
+            mass_kg: mass,
+            stiffness_n_per_m: stiffness,
+            // Between them a line of something else.
+            lines_hz: [high, 0.5 * (low + high), low, 0.0],
+            ..scale()
+        };
+        let starts = effect(kind).starts(&sizes);
+        let is_told = |values: &Vec<f64>| {
+            let mut pairs = values.iter().zip(wanted);
+            pairs.all(|(found, wanted)| (found / wanted - 1.0).abs() < 1e-9)
+        };
+        assert!(starts.iter().any(is_told), "{kind}: {starts:?}");
+    };
+    let own = stiffness / mass;
+    let (heavier, freq) = (0.07, 3.4);
+    let hidden = (TAU * freq).powi(2);
+    let modes = lines(own + hidden * (1.0 + heavier), own * hidden);
+    told("attached_mode", modes, [heavier * mass, freq]);
+    let support = [24_250.0, 47.6];
+    let hidden = support[0] / support[1];
+    let modes = lines(own + hidden + stiffness / support[1], own * hidden);
+    told("flexible_support", modes, support);
+}
+
 /// What swings by less than a period in a record is a stiffness that is off, or drifts.
 #[test]
 fn verify_a_stiffness_that_hardly_moves_does_not_swing() {

@@ -4,6 +4,7 @@ use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, fit};
 
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, least, rank};
+use crate::coincidence::coincidence;
 use crate::gap::{Gap, RELEVANT_SHARE, over_noise};
 use crate::motion;
 use crate::noise_model::{
@@ -59,9 +60,10 @@ impl Search<'_> {
     }
 
     /// Whether a set leaves no share that counts of what wrong nominal parameters leave alone, so far as these were fitted. Of more
-    /// effects than were tried together, beside wrong nominal parameters, that is not said: it may stand in for fewer.
+    /// effects than were tried together, beside wrong nominal parameters, that is not said: it may stand in for fewer. So it is where values
+    /// of two effects agree: one cause may be behind both.
     fn leaves_no_share(&self, set: &CandidateModel, pool: &[CandidateModel], tried: usize) -> bool {
-        if counts(set)[0] > tried {
+        if counts(set)[0] > tried || coincidence(set, &self.space).is_some() {
             return false;
         }
         let are_alone = |set: &&CandidateModel| set.effects().iter().all(is_nominal);

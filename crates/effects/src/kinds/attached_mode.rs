@@ -90,6 +90,34 @@ pub(super) fn octaves(scale: &SiteScale) -> impl Iterator<Item = f64> + use<> {
     each.take_while(move |freq| *freq < nyquist)
 }
 
+/// What two modes of a mass on a spring, of which the model has one, say of the other.
+pub(super) struct Hidden {
+    /// Natural frequency of the other on a host that is held, squared, Hz².
+    pub(super) own: f64,
+    /// By how much more the squares of both together exceed those of each alone, Hz².
+    pub(super) coupling: f64,
+}
+
+/// What pairs of lines that the model leaves say of a hidden mode, if they are the modes of the host and of it,
+///
+/// ```text
+/// f₁² f₂² = f₀² fₕ²,   f₁² + f₂² = f₀² + fₕ² + c,   f₀ of the host alone
+/// ```
+pub(super) fn of_pairs_of_lines(scale: &SiteScale) -> Vec<Hidden> {
+    let host = scale.stiffness_n_per_m / scale.mass_kg / (TAU * TAU);
+    let lines = scale.lines_hz.iter().filter(|f| **f > 0.0);
+    let squares: Vec<f64> = lines.map(|f| f * f).collect();
+    let pairs = (0..squares.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let hidden = pairs.map(|(i, j)| {
+        let own = squares[i] * squares[j] / host;
+        let coupling = squares[i] + squares[j] - host - own;
+        Hidden { own, coupling }
+    });
+    hidden
+        .filter(|hidden| hidden.coupling > 0.0 && hidden.own.is_finite())
+        .collect()
+}
+
 /// Smallest attached mass, as a share of its host.
 const LIGHTEST: f64 = 1e-5;
 /// With more damping an attached mass does not vibrate.
@@ -171,6 +199,12 @@ impl Effect for AttachedMode {
         for freq in freqs.into_iter().filter(|f| *f > 0.0 && *f < nyquist) {
             for damping_ratio in [0.02, 0.15] {
                 starts.push(vec![0.1 * scale.mass_kg, freq, damping_ratio, 0.0, 0.0]);
+            }
+        }
+        for Hidden { own, coupling } in of_pairs_of_lines(scale) {
+            let (mass, freq) = (coupling / own * scale.mass_kg, own.sqrt());
+            if freq < nyquist {
+                starts.push(vec![mass, freq, rings_on(scale, freq), 0.0, 0.0]);
             }
         }
         starts

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Damper, GROUND, Location, Mass, Model, OutputKind, Spring, same_pair};
 
-use super::attached_mode::{dies_away, octaves, rings_on, unused_name};
+use super::attached_mode::{Hidden, dies_away, octaves, of_pairs_of_lines, rings_on, unused_name};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// What the model takes for the ground gives way: the springs and dampers between a mass and the
@@ -145,6 +145,11 @@ impl Effect for FlexibleSupport {
                     starts.push(with_mode_at(freq, scale, stiffness, ratio));
                 }
             }
+        }
+        for Hidden { own, coupling } in of_pairs_of_lines(scale) {
+            let mass = scale.stiffness_n_per_m / (TAU * TAU * coupling);
+            let stiffness = mass * TAU * TAU * own;
+            starts.push(vec![stiffness, mass, rings_on(scale, own.sqrt()), 0.0, 0.0]);
         }
         starts
     }
