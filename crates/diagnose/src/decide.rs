@@ -3,8 +3,8 @@
 use simgap_effects::Placed;
 use simgap_estimate::Start;
 use simgap_inference::{
-    CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, Search, is_nominal,
-    model_posterior, name, other,
+    CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, RELEVANT_SHARE, Search,
+    is_nominal, model_posterior, name, other,
 };
 
 use crate::prepared::Prepared;
@@ -22,6 +22,8 @@ pub(crate) struct Decision {
     pub(crate) effects: Vec<EffectPosterior>,
     /// The law that the catalogue may lack.
     pub(crate) other: Other,
+    /// What the model as given leaves above the noise, share of the motion, mean square, summed over the channels.
+    to_explain: f64,
     /// Where the final fit starts.
     start: Start,
 }
@@ -30,6 +32,23 @@ impl Decision {
     /// Where the final fit starts: the best set; for `unknown` the free law where that leaves less than re-estimated parameters.
     pub(crate) fn start(&self) -> &Start {
         &self.start
+    }
+
+    /// The places of the effects as they are told: what the model lacks comes before parameters of it that are off besides, unless it
+    /// closes no share of the gap that counts; then what explains most.
+    pub(crate) fn order(&self) -> Vec<usize> {
+        let least = RELEVANT_SHARE.powi(2) * self.to_explain;
+        let rank = |effect: &EffectPosterior| {
+            let is_besides = is_nominal(&effect.placed);
+            (!is_besides && effect.explains < least, is_besides)
+        };
+        let mut order: Vec<usize> = (0..self.effects.len()).collect();
+        order.sort_by(|&i, &j| {
+            let [one, other] = [i, j].map(|k| &self.effects[k]);
+            let by_rank = rank(one).cmp(&rank(other));
+            by_rank.then(other.explains.total_cmp(&one.explains))
+        });
+        order
     }
 }
 
@@ -56,6 +75,7 @@ pub(crate) fn decide(
         effects: posterior.effects.clone(),
         posterior,
         start: best.fit.estimate.clone(),
+        to_explain: gap.to_explain(),
         other,
     };
     if decision.other.probability > LIKELIER_THAN_NOT {

@@ -2,7 +2,7 @@
 
 use simgap_effects::{Placed, find_of, same_place, slip_of};
 use simgap_estimate::{EstimateError, Fit, Interval};
-use simgap_inference::{CandidateModel, EffectPosterior, is_nominal, name};
+use simgap_inference::{CandidateModel, EffectPosterior, name};
 use simgap_model::{Location, Model};
 
 use crate::check::{Check, Checked};
@@ -38,16 +38,9 @@ pub(crate) fn verdict(
         true => decision.posterior.best().map(|best| &best.fit),
         false => Some(estimate),
     };
-    let mut order: Vec<usize> = (0..decision.effects.len()).collect();
-    order.sort_by(|&i, &j| {
-        // What the model lacks comes before parameters of it that are off besides; then what explains most.
-        let [one, other] = [i, j].map(|k| &decision.effects[k]);
-        let by_family = is_nominal(&one.placed).cmp(&is_nominal(&other.placed));
-        by_family.then(other.explains.total_cmp(&one.explains))
-    });
     let own = 1.0 - decision.other.probability;
+    let order = decision.order().into_iter();
     let named: Vec<NamedEffect> = order
-        .into_iter()
         .map(|i| {
             let effect = &decision.effects[i];
             let intervals = fitted.and_then(|fit| intervals_of(fit, &effect.placed));

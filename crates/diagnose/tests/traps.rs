@@ -368,3 +368,17 @@ fn verify_friction_is_not_smoothed_by_what_is_not_there() {
     let outcome = diagnosed_with_noise(&strut, &truth, &[], 2e-3, 0.01);
     assert_eq!(named(&outcome), [("coulomb_friction".to_string(), rod())]);
 }
+
+/// What closes the gap is told first: a spring at 0.7 of its value, not the sensor that is two hundredths off besides.
+#[test]
+fn verify_a_wrong_parameter_that_closes_the_gap_comes_first() {
+    let between = Location::Between(["top".into(), "base".into()]);
+    let truth = [
+        placed("stiffness_error", between.clone(), &[0.7]),
+        placed("sensor_gain", Location::Channel("x".into()), &[0.98]),
+    ];
+    let outcome = diagnosed(&truth, &[]);
+    let named = common::named(&outcome);
+    let wanted = truth.map(|placed| (placed.effect.kind().to_string(), placed.at));
+    assert_eq!(named, wanted);
+}

@@ -49,12 +49,19 @@ impl Gap {
     /// u of (1) for what is left of each channel; zero where there is no gap.
     #[must_use]
     pub fn left(&self, variance: &[f64]) -> f64 {
-        let share = |square: &[f64]| -> f64 {
-            let channels = over_noise(square, &self.noise).zip(&self.std);
-            channels.map(|(rms, std)| (rms / std).powi(2)).sum()
-        };
-        let left = (share(variance) / share(&self.square)).sqrt();
+        let left = (self.share(variance) / self.to_explain()).sqrt();
         if left.is_finite() { left } else { 0.0 }
+    }
+
+    /// The denominator of (1).
+    #[must_use]
+    pub fn to_explain(&self) -> f64 {
+        self.share(&self.square)
+    }
+
+    fn share(&self, square: &[f64]) -> f64 {
+        let channels = over_noise(square, &self.noise).zip(&self.std);
+        channels.map(|(rms, std)| (rms / std).powi(2)).sum()
     }
 }
 

@@ -3,7 +3,7 @@
 //! ```text
 //! wrong nominal parameters: those that are off once all are re-estimated
 //! single effects: by score; from many values; dynamics of parameters; what the best ones grow into
-//! effects beside nominal parameters that are re-estimated
+//! effects beside nominal parameters that are re-estimated; before those from many values where the gap bends the parameters of the model
 //! pairs, sets of three: from the best sets so far, by score and from many values
 //! stretches of the records, each with a start of its own (multiple shooting)
 //! the best set: each effect removed, exchanged, shrunk; the best sets: grown, rescaled, one more added; until it stays
@@ -13,7 +13,7 @@
 //! a name would move, and no candidate promises to be worth a name: its score pays for its prior and for the values that it
 //! adjusts, it moves an output by enough, and a fit keeps it. So it is where the best set leaves no share that counts of what wrong
 //! parameters leave alone, and holds as many effects as any or, once effects were tried from many values, nothing promises; but for a set
-//! of more effects than were tried together yet, which may stand in for fewer. What promises beside a best set that leaves nothing but
+//! of more effects than were tried together yet, which may stand in for fewer, and for one of which two values agree. What promises beside a best set that leaves nothing but
 //! noise is added to it before the next stage (`ending.rs`).
 
 use std::collections::BTreeSet;
@@ -25,7 +25,7 @@ use simgap_estimate::{
 };
 
 use crate::candidate_model::{
-    CandidateModel, INDISTINGUISHABLE, NominalPrior, is_nominal, name, rank,
+    CandidateModel, INDISTINGUISHABLE, NominalPrior, is_bent, is_nominal, name, rank,
 };
 use crate::extended::{Extended, Visited};
 use crate::marginal_likelihood::log_marginal_likelihood;
@@ -244,8 +244,13 @@ impl<'a> Search<'a> {
         (base, linear): (&CandidateModel, &Base<'_>),
         recalibrated: Option<CandidateModel>,
         mut pool: Vec<CandidateModel>,
-        is_settled: bool,
+        mut is_settled: bool,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
+        // Bent nominal parameters are likelier wrong: beside those first.
+        let is_bent = is_bent(base);
+        if is_bent && !is_settled {
+            is_settled = self.beside(recalibrated.as_ref(), &mut pool, 0)?;
+        }
         if !is_settled {
             self.tell(Stage::SinglesFromManyValues);
             pool.extend(self.multistart(base, linear)?);
@@ -262,14 +267,9 @@ impl<'a> Search<'a> {
         let grown: Result<Vec<_>, _> = singles.map(|single| self.grow(single, 0)).collect();
         pool.extend(grown?.concat());
         rank(&mut pool);
-        let mut is_settled = self.settle(&mut pool, 1)?;
-        if let Some(recalibrated) = recalibrated
-            && !is_settled
-        {
-            self.tell(Stage::BesideParameters);
-            pool.extend(self.beside_recalibrated(&recalibrated)?);
-            rank(&mut pool);
-            is_settled = self.settle(&mut pool, 1)?;
+        is_settled = self.settle(&mut pool, 1)?;
+        if !is_bent && !is_settled {
+            is_settled = self.beside(recalibrated.as_ref(), &mut pool, 1)?;
         }
         let mut front: Vec<CandidateModel> = pool.clone();
         front.retain(|set| !set.effects().is_empty() && !self.is_full(set));
@@ -317,6 +317,22 @@ impl<'a> Search<'a> {
             rank(&mut pool);
         }
         Ok(pool)
+    }
+
+    /// Adds the sets of effects beside re-estimated nominal parameters, and tells whether the search is settled then.
+    fn beside(
+        &self,
+        recalibrated: Option<&CandidateModel>,
+        pool: &mut Vec<CandidateModel>,
+        tried: usize,
+    ) -> Result<bool, EstimateError> {
+        let Some(recalibrated) = recalibrated else {
+            return Ok(false);
+        };
+        self.tell(Stage::BesideParameters);
+        pool.extend(self.beside_recalibrated(recalibrated)?);
+        rank(pool);
+        self.settle(pool, tried)
     }
 
     /// Adds to the best sets unless the best is at its end, changes the best of them by one effect, and again, as long as a better one
