@@ -177,14 +177,17 @@ fn are_one(known: &Placed, effect: &dyn Effect, at: &Location, model: &Model) ->
         || same.iter().any(|e| e.kind == b && same_place(&e.at, at))
 }
 
-/// The phases that the clock of an effect has in each record; what else a record has of its own is
-/// at rest.
+/// The phases that the clock of an effect has in each record, and the times at which holds begin; what else a record has of its own is at
+/// rest.
 fn own_values(random: &mut Random, placed: &Placed, records: usize) -> Vec<Vec<f64>> {
     let places = placed.own_places();
     let clock = placed.effect.clock();
     let mut value = |place: usize| match clock {
         Some(clock) if clock.phase == place => random.uniform(-PI, PI),
-        _ => placed.effect.parameters()[place].neutral.unwrap_or(0.0),
+        _ => match placed.effect.parameters()[place].neutral {
+            Some(rest) => rest,
+            None => random.uniform(0.0, 1.0),
+        },
     };
     if places.is_empty() {
         return vec![];

@@ -298,6 +298,12 @@ pub trait Effect: Sync + Send {
         true
     }
 
+    /// Values with those that each record has of its own where a search for these begins: as given, but where they begin anywhere within
+    /// something that repeats itself.
+    fn own_starts(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        vec![values.to_vec()]
+    }
+
     /// The clock of an effect that has one of its own.
     fn clock(&self) -> Option<Clock> {
         None

@@ -161,7 +161,8 @@ fn verify_a_hold_grows_from_the_delay_that_it_is_seen_as() {
         (renewals - renewals.round()).abs()
     };
     let is_near = |values: &Vec<f64>| [0.0, 9.0].iter().all(|t_s| apart(values, *t_s) <= 0.25);
-    assert!(grown.iter().any(is_near));
+    let mut begun = grown.iter().flat_map(|values| held.own_starts(values));
+    assert!(begun.any(|values| is_near(&values)));
     let short_s = 0.4 * sizes.time_step_s;
     assert!(
         held.grown_from("input_delay", &[short_s], &sizes)
@@ -200,14 +201,20 @@ fn prop_held_input_moves_with_its_times() {
     }
 }
 
+/// In every record the first of the holds begins anywhere within one.
 #[test]
-fn verify_held_input_starts_hold_every_phase_of_short_holds() {
-    let step_s = scale().time_step_s;
-    let starts = effect("held_input").starts(&scale());
-    for samples in 2..=5 {
-        for first in 0..samples {
-            let start = [samples, first].map(|count| f64::from(count) * step_s);
-            assert!(starts.contains(&start.to_vec()), "{start:?}");
+fn verify_holds_begin_anywhere_within_one() {
+    let held = effect("held_input");
+    assert_eq!(held.parameters().iter().filter(|p| p.per_record).count(), 1);
+    for start in held.starts(&scale()) {
+        let begun = held.own_starts(&start);
+        assert!(begun.iter().all(|values| values[0] == start[0]));
+        for share in [0.0, 0.3, 0.99] {
+            let apart = |values: &Vec<f64>| {
+                let holds = values[1] / values[0] - share;
+                (holds - holds.round()).abs()
+            };
+            assert!(begun.iter().any(|values| apart(values) < 0.07), "{share}");
         }
     }
 }
@@ -220,10 +227,7 @@ fn verify_held_input_starts_from_carriers() {
         ..scale()
     };
     let starts = effect("held_input").starts(&sizes);
-    let longer = starts.iter().filter(|start| start[0] == 0.125);
-    let places: Vec<f64> = longer.map(|start| start[1] / start[0]).collect();
-    let even: Vec<f64> = (0..8).map(|k| f64::from(k) / 8.0).collect();
-    assert_eq!(places, even);
+    assert!(starts.iter().any(|start| start[0] == 0.125));
 }
 
 #[test]

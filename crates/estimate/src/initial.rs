@@ -190,8 +190,22 @@ fn shared_only(placed: &Placed) -> Placed {
     Placed::new(placed.effect, placed.at.clone(), placed.values.clone())
 }
 
-/// The best fit of one run from each quarter of every clock: a sine has one best phase and one
-/// worst.
+/// Values of an effect of which a fit finds those of a record's own: from each quarter of a clock, since a sine has one best phase and
+/// one worst.
+fn turned(placed: &Placed) -> Vec<Vec<f64>> {
+    let rest = from_rest(placed);
+    let Some(clock) = placed.effect.clock() else {
+        return placed.effect.own_starts(&rest.values);
+    };
+    let quarter = |quarter: i32| {
+        let mut values = rest.values.clone();
+        values[clock.phase] = f64::from(quarter) * FRAC_PI_2;
+        values
+    };
+    (0..4).map(quarter).collect()
+}
+
+/// The best fit of one run from all that an effect may begin it with.
 fn best_of(
     alone: &Problem,
     own: &[Placed],
@@ -200,17 +214,15 @@ fn best_of(
 ) -> Result<Fit, EstimateError> {
     let mut starts: Vec<Vec<Placed>> = vec![own.iter().map(from_rest).collect()];
     for (e, placed) in own.iter().enumerate() {
-        let Some(clock) = placed.effect.clock() else {
-            continue;
-        };
-        starts = (0..4)
-            .flat_map(|quarter| {
-                let turned = starts.iter().map(move |effects| {
+        let begun = turned(placed);
+        starts = starts
+            .iter()
+            .flat_map(|effects| {
+                begun.iter().map(|values| {
                     let mut effects = effects.clone();
-                    effects[e].values[clock.phase] = f64::from(quarter) * FRAC_PI_2;
+                    effects[e].values.clone_from(values);
                     effects
-                });
-                turned.collect::<Vec<_>>()
+                })
             })
             .collect();
     }

@@ -104,18 +104,21 @@ fn score_whole(
     what: (&Candidate, Option<usize>),
     points: &[Vec<f64>],
 ) -> Result<Vec<Score>, EstimateError> {
-    score_each(base, what, points, whole, |values, in_common, own| {
-        let column = Regressor {
-            trial: own.start,
-            run: None,
-        };
-        base.score_as_it_stands(what.0, values, in_common, &[column])
+    let wanted = |values: &[f64]| as_it_stands(what.0, values);
+    score_each(base, what, points, wanted, |values, in_common, own| {
+        base.score_as_it_stands(what.0, values, in_common, own)
     })
 }
 
 /// The effect with all of its values.
 pub(crate) fn whole(values: &[f64]) -> Vec<Trial> {
     vec![(values.to_vec(), 1.0)]
+}
+
+/// The effect with all of its values, from all that it may begin a record with.
+fn as_it_stands(candidate: &Candidate, values: &[f64]) -> Vec<Trial> {
+    let begun = candidate.effect.own_starts(values).into_iter();
+    begun.map(|values| (values, 1.0)).collect()
 }
 
 /// Scores of one candidate at many values, in the place of an effect of the set if one is given, best first: the trials that each wants are simulated a few at a time, and scored by what they
@@ -183,7 +186,7 @@ pub(crate) fn trials(candidate: &Candidate, shape: &[f64]) -> Vec<Trial> {
             .into_iter()
             .map(|k| (sized(candidate.effect, shape, Some(k), TRIAL), TRIAL))
             .collect(),
-        Way::AsItStands => vec![(shape.to_vec(), 1.0)],
+        Way::AsItStands => as_it_stands(candidate, shape),
         Way::ByClock(clock) => [0.0, FRAC_PI_2]
             .map(|phase| {
                 let mut values = shape.to_vec();
@@ -224,31 +227,61 @@ impl Base<'_> {
         in_common: &InCommon,
         own: Range<usize>,
     ) -> Option<Score> {
-        let everywhere = own.clone().map(|trial| Regressor { trial, run: None });
-        let everywhere: Vec<Regressor> = everywhere.collect();
         match way(candidate, shape) {
             Way::BySize(sizes) => {
                 if let Some(drift) = self.problem.drift(candidate.effect, &candidate.at) {
                     return self.score_drift(candidate, shape, &drift, in_common, own);
                 }
-                let solution = self.amplitudes(in_common, &everywhere)?;
+                let everywhere = own.map(|trial| Regressor { trial, run: None });
+                let solution = self.amplitudes(in_common, &everywhere.collect::<Vec<_>>())?;
                 self.score_sizes(candidate, shape, &sizes, solution)
             }
             // Without a size to grow from (a limit): by the whole of what it does.
-            Way::AsItStands => self.score_as_it_stands(candidate, shape, in_common, &everywhere),
+            Way::AsItStands => self.score_as_it_stands(candidate, shape, in_common, own),
             Way::ByClock(clock) => self.score_clock(candidate, shape, clock, in_common, own),
         }
     }
 
+    /// By the whole of what it does; where there are several ways to begin a record, by the best of them in each.
     fn score_as_it_stands(
         &self,
         candidate: &Candidate,
         values: &[f64],
         in_common: &InCommon,
-        column: &[Regressor],
+        own: Range<usize>,
     ) -> Option<Score> {
-        let (amplitude, energy) = self.amplitudes(in_common, column)?;
-        (amplitude[0] > 0.0).then(|| self.scored(candidate, values.to_vec(), energy))
+        let everywhere = |trial| Regressor { trial, run: None };
+        if own.len() == 1 {
+            let (amplitude, energy) = self.amplitudes(in_common, &[everywhere(own.start)])?;
+            return (amplitude[0] > 0.0).then(|| self.scored(candidate, values.to_vec(), energy));
+        }
+        let begun = candidate.effect.own_starts(values);
+        let best_of = |run: usize| {
+            let alone = own.clone().zip(&begun).filter_map(|(trial, begun)| {
+                let column = Regressor {
+                    trial,
+                    run: Some(run),
+                };
+                let (amplitude, energy) = self.amplitudes(in_common, &[column])?;
+                (amplitude[0] > 0.0).then_some((column, begun, energy))
+            });
+            alone.max_by(|a, b| a.2.total_cmp(&b.2))
+        };
+        let best: Vec<(Regressor, &Vec<f64>, f64)> = (0..self.problem.runs.len())
+            .map(best_of)
+            .collect::<Option<_>>()?;
+        let columns: Vec<Regressor> = best.iter().map(|(column, ..)| *column).collect();
+        let (amplitudes, energy) = self.amplitudes(in_common, &columns)?;
+        if amplitudes.iter().any(|amplitude| *amplitude <= 0.0) {
+            return None;
+        }
+        let mut score = self.scored(candidate, best.first()?.1.clone(), energy);
+        let places = score.start.own_places();
+        let own = best
+            .iter()
+            .map(|(_, begun, _)| places.iter().map(|&i| begun[i]).collect());
+        score.start.of_record = own.collect();
+        Some(score)
     }
 
     fn score_sizes(

@@ -366,7 +366,8 @@ fn verify_a_hold_is_found_from_its_carrier() {
             (values[0] / hold[0] - 1.0).abs() < 1e-4,
             "{kind}: {values:?}"
         );
-        let late = (values[1] - hold[1]) / hold[0];
+        let begun = found.estimate.effects[0].of_record[0][0];
+        let late = (begun - hold[1]) / hold[0];
         assert!((late - late.round()).abs() < 0.02, "{kind}: {values:?}");
     }
 }

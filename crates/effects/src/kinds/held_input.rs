@@ -6,8 +6,8 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale, usua
 use crate::prior::Prior;
 use crate::signal_map::{Sampled, SignalMap};
 
-/// An input reaches the plant in held values: a set point that a controller or a bus renews only every T, and
-/// holds in between.
+/// An input reaches the plant in held values: a set point that a controller or a bus renews only every T, by a clock that knows nothing of
+/// when a record begins, and holds in between.
 ///
 /// ```text
 /// u_plant(t) = u(t_k),   t_k = t₀ + T ⌊(t − t₀)/T⌋,   t from the first sample of the record      (1)
@@ -22,35 +22,24 @@ use crate::signal_map::{Sampled, SignalMap};
 /// Reference: \[Franklin1998\], section 4.3.
 pub(crate) struct HeldInput;
 
-/// Numbers of samples of which every place of the first one is tried.
+/// Numbers of samples that holds are looked for with, and longer ones as they are met with.
 const SHORT: [usize; 4] = [2, 3, 4, 5];
-/// Longer ones as they are met with, the first one at quarters of them.
 const LONG: [usize; 4] = [8, 10, 20, 50];
-const QUARTERS: usize = 4;
-/// Holds that lines of what is left tell, and how many places of the first one are tried of each.
+/// Holds that lines of what is left tell, and how many places of the first one are tried in each record.
 const CARRIERS: usize = 2;
 const PLACES: usize = 8;
 /// How far twice a fitted delay is from the hold that it stands for, as a share.
 const FROM_DELAY: f64 = 0.015;
+/// Share of a hold by which the last of a record slips from one of those to the next.
+const SLIP: f64 = 0.25;
 
-/// Holds of a number of samples, the first one at so many places of it.
-fn of_samples(samples: usize, places: usize, scale: &SiteScale) -> Vec<Vec<f64>> {
-    let first = |place: usize| place * samples / places;
-    let values = |place: usize| [samples, first(place)].map(|n| n as f64 * scale.time_step_s);
-    (0..places).map(|place| values(place).to_vec()).collect()
-}
-
-/// Holds of few samples, the first one at every place.
-fn short(scale: &SiteScale) -> impl Iterator<Item = Vec<f64>> + use<'_> {
-    SHORT
-        .into_iter()
-        .flat_map(|samples| of_samples(samples, samples, scale))
-}
-
-/// The first one at so many places of a hold.
-fn placed(time_s: f64, places: usize) -> impl Iterator<Item = Vec<f64>> {
-    let share = move |place: usize| place as f64 / places as f64;
-    (0..places).map(move |place| vec![time_s, share(place) * time_s])
+/// Holds of numbers of samples.
+fn of_samples<'a>(
+    samples: impl IntoIterator<Item = usize> + 'a,
+    scale: &'a SiteScale,
+) -> impl Iterator<Item = Vec<f64>> + 'a {
+    let counts = samples.into_iter();
+    counts.map(|count| vec![count as f64 * scale.time_step_s, 0.0])
 }
 
 struct Hold {
@@ -143,7 +132,7 @@ impl Effect for HeldInput {
         const {
             &[
                 Parameter::size("hold_time_s", "s", 0.0, f64::INFINITY),
-                Parameter::shape("hold_start_s", "s", f64::NEG_INFINITY, f64::INFINITY),
+                Parameter::shape("hold_start_s", "s", f64::NEG_INFINITY, f64::INFINITY).of_record(),
             ]
         }
     }
@@ -160,20 +149,20 @@ impl Effect for HeldInput {
 
     /// Few samples, and the times of carriers of what is left.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let mut starts: Vec<Vec<f64>> = short(scale).collect();
         let carriers = scale.carriers_hz.into_iter().filter(|freq| *freq > 0.0);
-        for time_s in carriers.take(CARRIERS).map(f64::recip) {
-            starts.extend(placed(time_s, PLACES));
-        }
-        starts
+        let of_carriers = carriers.take(CARRIERS).map(|freq| vec![freq.recip(), 0.0]);
+        of_samples(SHORT, scale).chain(of_carriers).collect()
     }
 
     /// Whole numbers of samples.
     fn usual(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        let long = LONG
-            .into_iter()
-            .flat_map(|samples| of_samples(samples, QUARTERS, scale));
-        short(scale).chain(long).collect()
+        of_samples(SHORT.into_iter().chain(LONG), scale).collect()
+    }
+
+    fn own_starts(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let share = |place: usize| (place as f64 + 0.5) / PLACES as f64;
+        let places = (0..PLACES).map(|place| vec![values[0], share(place) * values[0]]);
+        places.collect()
     }
 
     /// A plant that is slow beside the hold sees a delay by half of it.
@@ -187,13 +176,10 @@ impl Effect for HeldInput {
         if kind != "input_delay" || about_s <= scale.time_step_s {
             return vec![];
         }
-        let quarters = QUARTERS as f64;
-        let step_s = about_s * (about_s / scale.duration_s).min(1.0) / quarters;
+        let step_s = SLIP * about_s * (about_s / scale.duration_s).min(1.0);
         let steps = (FROM_DELAY * about_s / step_s).ceil() as i32;
         let times_s = (-steps..=steps).map(|k| about_s + f64::from(k) * step_s);
-        times_s
-            .flat_map(|time_s| placed(time_s, QUARTERS))
-            .collect()
+        times_s.map(|time_s| vec![time_s, 0.0]).collect()
     }
 
     /// A part of a hold is another hold, and none where it is shorter than a sample.

@@ -26,28 +26,33 @@ impl Search<'_> {
         base: &CandidateModel,
         index: usize,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
-        let mut grown = self.grown(base, index);
+        let grown = self.grown(base, index);
         if grown.iter().all(|(_, shapes)| shapes.is_empty()) {
             return Ok(vec![]);
         }
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         // What would not all be fitted the whole way is fitted from the best values, by score.
         let [few, more] = FINISHED;
-        for (candidate, shapes) in &mut grown {
-            if shapes.len() > few + more {
-                let best = score_in_place_of(&linear, index, candidate, shapes)?;
-                let best = best.into_iter().take(few);
-                *shapes = best.map(|score| score.start.values).collect();
-            }
-        }
-        let starts = grown.into_iter().flat_map(|(candidate, shapes)| {
-            shapes.into_iter().map(move |values| {
-                let grown = Placed::new(candidate.effect, candidate.at.clone(), values);
+        let mut starts = vec![];
+        for (candidate, shapes) in grown {
+            let begins_anywhere = |values: &Vec<f64>| candidate.effect.own_starts(values).len() > 1;
+            let placed: Vec<Placed> =
+                if shapes.len() > few + more || shapes.iter().any(begins_anywhere) {
+                    let best = score_in_place_of(&linear, index, candidate, &shapes)?;
+                    best.into_iter()
+                        .take(few)
+                        .map(|score| score.start)
+                        .collect()
+                } else {
+                    let of = |values| Placed::new(candidate.effect, candidate.at.clone(), values);
+                    shapes.into_iter().map(of).collect()
+                };
+            starts.extend(placed.into_iter().map(|grown| {
                 let start = replace(&base.fit.estimate, index, grown.clone(), self.nominal);
                 without_limits(start, &grown, self.nominal)
-            })
-        });
-        Ok(self.fit_all(&starts.collect::<Vec<_>>(), &linear))
+            }));
+        }
+        Ok(self.fit_all(&starts, &linear))
     }
 
     /// The sets in which one effect has shrunk to a special case it contains, or to what it turns into.
