@@ -267,19 +267,26 @@ impl Base<'_> {
             });
             alone.max_by(|a, b| a.2.total_cmp(&b.2))
         };
-        let best: Vec<(Regressor, &Vec<f64>, f64)> = (0..self.problem.runs.len())
-            .map(best_of)
-            .collect::<Option<_>>()?;
-        let columns: Vec<Regressor> = best.iter().map(|(column, ..)| *column).collect();
+        // A record in which the effect shows from nowhere tells nothing of where it begins.
+        let best: Vec<Option<(Regressor, &Vec<f64>, f64)>> =
+            (0..self.problem.runs.len()).map(best_of).collect();
+        let columns: Vec<Regressor> = best.iter().flatten().map(|(column, ..)| *column).collect();
+        if columns.is_empty() {
+            return None;
+        }
         let (amplitudes, energy) = self.amplitudes(in_common, &columns)?;
         if amplitudes.iter().any(|amplitude| *amplitude <= 0.0) {
             return None;
         }
-        let mut score = self.scored(candidate, best.first()?.1.clone(), energy);
+        let of_run = |best: &Option<(Regressor, &Vec<f64>, f64)>| {
+            best.map_or_else(|| values.to_vec(), |(_, begun, _)| begun.clone())
+        };
+        let mut score = self.scored(candidate, of_run(best.first()?), energy);
         let places = score.start.own_places();
-        let own = best
-            .iter()
-            .map(|(_, begun, _)| places.iter().map(|&i| begun[i]).collect());
+        let own = best.iter().map(|best| {
+            let values = of_run(best);
+            places.iter().map(|&i| values[i]).collect()
+        });
         score.start.of_record = own.collect();
         Some(score)
     }
