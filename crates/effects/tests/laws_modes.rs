@@ -313,5 +313,10 @@ fn verify_a_mode_that_does_not_die_away_is_none() {
         assert!(!keeps(kind, losing(0.01), &scale()), "{kind}");
         assert!(keeps(kind, losing(0.01), &free), "{kind}");
         assert!(!keeps(kind, losing(1e-4), &free), "{kind}");
+        // It swings back, or it creeps.
+        assert!(
+            keeps(kind, 0.9, &scale()) && !keeps(kind, 1.1, &scale()),
+            "{kind}"
+        );
     }
 }

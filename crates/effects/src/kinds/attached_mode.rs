@@ -120,8 +120,8 @@ pub(super) fn of_pairs_of_lines(scale: &SiteScale) -> Vec<Hidden> {
 
 /// Smallest attached mass, as a share of its host.
 const LIGHTEST: f64 = 1e-5;
-/// With more damping an attached mass does not vibrate.
-const RINGS: f64 = 1.0;
+/// With more damping a hidden mass does not vibrate.
+pub(super) const RINGS: f64 = 1.0;
 /// Share of its amplitude, about, that a mode loses along a record at the least, or of the decay of the mass that it moves.
 const DIES_AWAY: f64 = 0.1;
 

@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 
 use simgap_model::{Damper, GROUND, Location, Mass, Model, OutputKind, Spring, same_pair};
 
-use super::attached_mode::{Hidden, dies_away, octaves, of_pairs_of_lines, rings_on, unused_name};
+use super::attached_mode::{
+    Hidden, RINGS, dies_away, octaves, of_pairs_of_lines, rings_on, unused_name,
+};
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// What the model takes for the ground gives way: the springs and dampers between a mass and the
@@ -154,9 +156,10 @@ impl Effect for FlexibleSupport {
         starts
     }
 
-    /// One of thousands of tons that nothing damps does not give way: it is a tone, carried by its start.
+    /// One of thousands of tons that nothing damps does not give way: it is a tone, carried by its start. One that does not ring is a damper
+    /// in a row with the spring, and no mode.
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
-        dies_away(values[2] * (values[0] / values[1]).sqrt(), scale)
+        dies_away(values[2] * (values[0] / values[1]).sqrt(), scale) && values[2] < RINGS
     }
 
     fn turns_into(&self) -> &'static [&'static str] {
