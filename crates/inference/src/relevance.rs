@@ -1,8 +1,8 @@
 //! Practical relevance: which effects are worth a name.
 //!
 //! An effect is not that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel, nor one that closes no more in any than
-//! a tenth of the noise, mean square, to which that is known ([`NOISE_KNOWN`]), or of what it is rounded by, for rounding follows the motion;
-//! nor one that moves no output by enough ([`motion::is_enough`]), nor one without which no more is left than no set is expected to explain; nor one beside others that
+//! a tenth of what it is rounded by ([`NOISE_KNOWN`]), for rounding follows the motion, nor one that moves no output by enough
+//! ([`motion::is_enough`]), nor one without which no more is left than no set is expected to explain; nor one beside others that
 //! explains less than half of what is left above the noise.
 
 use simgap_estimate::{EstimateError, FitOptions, fit};
@@ -60,7 +60,7 @@ impl Search<'_> {
         channels.any(|((closed, (left, (noise, floor))), (gap, rounded))| {
             let stands_out = *left > NOISE_KNOWN * floor;
             stands_out
-                && closed > (NOISE_KNOWN - 1.0) * noise.max(rounded)
+                && closed > (NOISE_KNOWN - 1.0) * rounded
                 && closed > (RELEVANT_SHARE * gap).powi(2)
                 && (is_first || closed > OF_REST * (left - noise))
         })
