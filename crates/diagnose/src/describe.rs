@@ -39,8 +39,9 @@ pub(crate) fn verdict(
         false => Some(estimate),
     };
     let own = 1.0 - decision.other.probability;
-    let order = decision.order().into_iter();
-    let named: Vec<NamedEffect> = order
+    let named: Vec<NamedEffect> = decision
+        .order()
+        .into_iter()
         .map(|i| {
             let effect = &decision.effects[i];
             let intervals = fitted.and_then(|fit| intervals_of(fit, &effect.placed));

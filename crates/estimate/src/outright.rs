@@ -6,8 +6,8 @@
 //! the place of the column C in (1) of [`score`](crate::score()), and all sizes of the effect are taken
 //! in proportion at what the data ask for.
 
-use crate::base::{Base, InCommon, Regressor};
-use crate::score::{Score, score_each, sized, whole};
+use crate::base::{Base, InCommon, Regressor, Trial};
+use crate::score::{Score, score_each, sized};
 use crate::{Candidate, EstimateError};
 
 /// Scores one candidate at each of many values, best first. Values from which the plant runs away are
@@ -24,6 +24,11 @@ pub fn score_outright(
     score_each(base, alone, points, whole, |values, in_common, own| {
         base.score_resized(candidate, values, in_common, own.start)
     })
+}
+
+/// The effect with all of its values, the same in every record.
+fn whole(values: &[f64]) -> Vec<Trial> {
+    vec![(values.to_vec(), 1.0)]
 }
 
 impl Base<'_> {

@@ -110,11 +110,6 @@ fn score_whole(
     })
 }
 
-/// The effect with all of its values.
-pub(crate) fn whole(values: &[f64]) -> Vec<Trial> {
-    vec![(values.to_vec(), 1.0)]
-}
-
 /// The effect with all of its values, from all that it may begin a record with.
 fn as_it_stands(candidate: &Candidate, values: &[f64]) -> Vec<Trial> {
     let begun = candidate.effect.own_starts(values).into_iter();

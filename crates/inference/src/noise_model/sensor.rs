@@ -74,12 +74,10 @@ pub fn is_sensor_noise(discrepancy: &[f64]) -> bool {
         return false;
     };
     let colour = correlation.get(1).copied().unwrap_or(1.0).max(0.0);
-    if colour < MOST_COLOUR && is_white(&innovations(discrepancy, [colour, 0.0])) {
-        return true;
-    }
-    let [colour, white] = filtered_and_white(&correlation);
-    let left = innovations(discrepancy, [colour, white]);
-    colour < MOST_COLOUR && is_white(&left)
+    let mut processes = [[colour, 0.0], filtered_and_white(&correlation)].into_iter();
+    processes.any(|[colour, white]| {
+        colour < MOST_COLOUR && is_white(&innovations(discrepancy, [colour, white]))
+    })
 }
 
 /// a and b by (2), a from all lags by least squares.

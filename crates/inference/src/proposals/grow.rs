@@ -31,7 +31,8 @@ impl Search<'_> {
             return Ok(vec![]);
         }
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
-        // What would not all be fitted the whole way is fitted from the best values, by score.
+        // What would not all be fitted the whole way is fitted from the best values, by score; so is what begins anywhere in each record,
+        // for that is what the score tells.
         let [few, more] = FINISHED;
         let mut starts = vec![];
         for (candidate, shapes) in grown {
