@@ -6,19 +6,22 @@
 
 use simgap_simulate::Run;
 
-/// Samples the search may use; more make it slower, not wiser.
+/// Samples the search may use, and values of all channels in them; more make it slower, not wiser.
 const SEARCH_SAMPLES: usize = 12_000;
+const SEARCH_VALUES: usize = 36_000;
 /// What straight lines between the samples of a lower rate may miss, rms: of an input over its motion, and of what is left.
 const MISSED: [f64; 2] = [0.01, 0.1];
 
 /// The runs to search in, given what re-estimated parameters leave of each channel of each.
 pub(crate) fn excerpts(runs: &[Run], left: &[Vec<Vec<f64>>]) -> Vec<Run> {
     let total: usize = runs.iter().map(|run| run.len).sum();
-    if total <= SEARCH_SAMPLES {
+    let channels = runs.iter().map(|run| run.measured.len()).max();
+    let most = SEARCH_SAMPLES.min(SEARCH_VALUES / channels.unwrap_or(1).max(1));
+    if total <= most {
         return runs.to_vec();
     }
     // An odd number of samples: even and odd ones still alternate.
-    let stride = total.div_ceil(SEARCH_SAMPLES) | 1;
+    let stride = total.div_ceil(most) | 1;
     let is_smooth = |run: &Run, left: &Vec<Vec<f64>>| {
         let [of_input, of_rest] = MISSED;
         run.inputs
@@ -33,7 +36,7 @@ pub(crate) fn excerpts(runs: &[Run], left: &[Vec<Vec<f64>>]) -> Vec<Run> {
     {
         return runs.iter().map(|run| run.thinned(stride)).collect();
     }
-    let share = SEARCH_SAMPLES as f64 / total as f64;
+    let share = most as f64 / total as f64;
     runs.iter()
         .map(|run| {
             let len = ((run.len as f64 * share) as usize).clamp(1, run.len);

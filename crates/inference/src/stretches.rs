@@ -24,8 +24,12 @@ const MOST_STRETCHES: usize = 40;
 const JOINED: usize = 4;
 /// Steps of these fits: the valley is narrow.
 const STEPS: usize = 80;
+/// Share of the motion, rms, from which on a set may be in a valley beside the right one: a lap ahead or behind leaves as much as the motion
+/// itself, even if it is lost in a hundredth of the records.
+const ASTRAY: f64 = 0.1;
 
-/// A set without effects fitted to whole records, or to stretches of them first, whichever leaves less.
+/// A set without effects fitted to whole records or, where these leave so much that the right valley may be another, to stretches of them
+/// first, whichever leaves less.
 ///
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated from the start.
@@ -36,7 +40,7 @@ pub fn recalibrate(
 ) -> Result<Fit, EstimateError> {
     let whole = fit(problem, start, weights)?;
     let cut = Cut::of(problem);
-    if cut.is_whole() || start.nominal.is_empty() {
+    if cut.is_whole() || start.nominal.is_empty() || !may_be_astray(problem, &whole) {
         return Ok(whole);
     }
     let in_stretches = || {
@@ -50,6 +54,14 @@ pub fn recalibrate(
     let by_stretches = cut.lengthen(problem, fitted.estimate, weights);
     let better = by_stretches.filter(|fit| fit.objective < whole.objective);
     Ok(better.unwrap_or(whole))
+}
+
+/// Whether a fit may have ended in a valley beside the right one, in some channel.
+fn may_be_astray(problem: &Problem, fit: &Fit) -> bool {
+    let std = problem.output_std();
+    let mut channels = fit.variance.iter().zip(&std);
+    // A channel that does not move says nothing.
+    channels.any(|(left, std)| *left > (ASTRAY * std).powi(2))
 }
 
 /// Sets fitted in as many steps as it takes. A start from which the plant runs away is no hypothesis.

@@ -142,3 +142,48 @@ pub fn effective_sample_count(residual: &[f64]) -> Result<f64, SignalError> {
     let tau = 2.0 * sum - 1.0;
     Ok((n as f64 / tau.max(1.0)).max(1.0))
 }
+
+/// Number of independent samples that the variance of a residual holds.
+///
+/// ```text
+/// n = 4 (Σ_k P_k)² / Σ_k P_k²,   k = 1 … ⌊(N-1)/2⌋,   kept between 1 and N
+/// ```
+///
+/// P is the periodogram without the mean. This is 2 B T with the statistical bandwidth B = (∫ G df)² / ∫ G² df of a power
+/// spectral density G and the length T of the record; the square of a bin of a periodogram is twice that of its expectation, which
+/// the other factor of two is for. White noise gives N, first-order noise of coefficient φ gives N (1-φ²)/(1+φ²), and a line a few samples,
+/// its amplitude and its phase. Other than [`effective_sample_count`], which is that of a mean, it counts what a narrow band holds wherever
+/// the band lies.
+///
+/// Reference: BendatPiersol2010, section 8.3.
+///
+/// # Errors
+///
+/// [`SignalError::TooShort`] for fewer than 8 samples, [`SignalError::NonFinite`], [`SignalError::Flat`].
+///
+/// # Examples
+///
+/// ```
+/// use simgap_signal::correlation::independent_sample_count;
+/// let line: Vec<f64> = (0..1000).map(|n| (0.5 * n as f64).sin()).collect();
+/// assert!(independent_sample_count(&line)? < 10.0);
+/// # Ok::<(), simgap_signal::SignalError>(())
+/// ```
+pub fn independent_sample_count(residual: &[f64]) -> Result<f64, SignalError> {
+    check::finite("residual", residual, 8)?;
+    if residual.iter().all(|&v| v == residual[0]) {
+        return Err(SignalError::Flat { what: "residual" });
+    }
+    let count = residual.len();
+    let mean = residual.iter().sum::<f64>() / count as f64;
+    let centred: Vec<f64> = residual.iter().map(|r| r - mean).collect();
+    let half = real_fft(&centred);
+    let bins = half.iter().take(count.div_ceil(2)).skip(1);
+    let (sum, square) = bins
+        .map(|bin| bin.norm_sqr())
+        .fold((0.0, 0.0), |(sum, square), power| {
+            (sum + power, square + power * power)
+        });
+    let independent = 4.0 * sum * sum / square;
+    Ok(independent.clamp(1.0, count as f64))
+}

@@ -3,7 +3,9 @@
 
 use crate::common::{Noise, cosine, max_diff};
 use simgap_signal::SignalError;
-use simgap_signal::correlation::{autocorrelation, effective_sample_count};
+use simgap_signal::correlation::{
+    autocorrelation, effective_sample_count, independent_sample_count,
+};
 use simgap_signal::noise::{noise_std_by_differences, white_noise_std};
 
 #[test]
@@ -79,11 +81,12 @@ fn verify_autocorrelation_is_the_slow_one() {
 
 #[test]
 fn verify_effective_count_of_first_order_noise() {
-    // N_eff = N (1-φ)/(1+φ). The estimate scatters by about 10 % at 20000 samples; mean of 20 runs.
+    // N_eff = N (1-φ)/(1+φ) of the mean, N (1-φ²)/(1+φ²) of the variance. The estimate scatters by about 10 % at 20000 samples; mean
+    // of 20 runs.
     let n = 20_000;
     for phi in [0.0, 0.5, 0.9] {
         let mut noise = Noise::new(7);
-        let mut mean = 0.0;
+        let (mut mean, mut of_variance) = (0.0, 0.0);
         for _ in 0..20 {
             let mut state = 0.0;
             let x: Vec<f64> = (0..n)
@@ -93,11 +96,46 @@ fn verify_effective_count_of_first_order_noise() {
                 })
                 .collect();
             mean += effective_sample_count(&x).unwrap() / 20.0;
+            of_variance += independent_sample_count(&x).unwrap() / 20.0;
         }
         let want = n as f64 * (1.0 - phi) / (1.0 + phi);
-        println!("{phi}: {mean} {want}");
         assert!((mean / want - 1.0).abs() < 0.06, "{phi} {mean} {want}");
+        let want = n as f64 * (1.0 - phi * phi) / (1.0 + phi * phi);
+        assert!(
+            (of_variance / want - 1.0).abs() < 0.02,
+            "{phi} {of_variance} {want}"
+        );
     }
+}
+
+/// A resonance of damping ratio ζ at ω has n = 2 ζ ω T independent samples in its variance, wherever its band lies: the square of its correlation
+/// is ½ e^(-2 ζ ω τ).
+#[test]
+fn verify_independent_samples_of_a_narrow_band() {
+    let n = 40_000;
+    for angle in [0.05_f64, 0.4, 1.5] {
+        let decay = 0.995_f64;
+        let mut noise = Noise::new(11);
+        let mut mean = 0.0;
+        for _ in 0..20 {
+            let (mut last, mut before) = (0.0, 0.0);
+            let x: Vec<f64> = (0..n)
+                .map(|_| {
+                    let next =
+                        2.0 * decay * angle.cos() * last - decay * decay * before + noise.normal();
+                    (before, last) = (last, next);
+                    next
+                })
+                .collect();
+            mean += independent_sample_count(&x).unwrap() / 20.0;
+        }
+        let want = n as f64 * -2.0 * decay.ln();
+        assert!((mean / want - 1.0).abs() < 0.1, "{angle} {mean} {want}");
+    }
+    let line: Vec<f64> = (0..n).map(|i| (0.01 * f64::from(i)).sin()).collect();
+    assert!(independent_sample_count(&line).unwrap() < 10.0);
+    assert!(independent_sample_count(&[1.0; 7]).is_err());
+    assert!(independent_sample_count(&[1.0; 50]).is_err());
 }
 
 #[test]

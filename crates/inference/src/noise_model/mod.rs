@@ -28,7 +28,8 @@ pub use sensor::{
 pub use whitening::whitening;
 
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
-use simgap_signal::correlation::effective_sample_count;
+use simgap_signal::SignalError;
+use simgap_signal::correlation::{effective_sample_count, independent_sample_count};
 
 /// How well noise is known: its mean square to a tenth. What is left within it is noise.
 pub const NOISE_KNOWN: f64 = 1.1;
@@ -42,10 +43,12 @@ pub struct NoiseModel {
     pub effective_share: Vec<f64>,
     /// ε_c over the standard deviation of the channel.
     pub floor: Vec<f64>,
+    /// Standard deviation of each channel.
+    std: Vec<f64>,
 }
 
 impl NoiseModel {
-    /// For a problem, with the colour of what a fit of it leaves.
+    /// For a problem, with the colour of what a fit of it with re-estimated parameters leaves.
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
@@ -55,31 +58,36 @@ impl NoiseModel {
         residual: &Fit,
     ) -> Result<NoiseModel, EstimateError> {
         let options = FitOptions::white(problem.model.outputs.len());
-        let driven = input_noise(problem, &baseline.estimate.nominal, &options, &[])?;
+        // A model that parts from the machine, a pendulum that turns over where the real one does not, is led away by any noise.
+        let driven = |of: &Fit| input_noise(problem, &of.estimate.nominal, &options, &[]);
+        let driven = driven(baseline)?.into_iter().zip(driven(residual)?);
+        let driven = driven.map(|(given, estimated)| given.beyond(0.0).min(estimated.beyond(0.0)));
         let of_simulation = accuracy(problem, baseline)?;
         let std = problem.output_std();
-        let channels = of_simulation.iter().zip(&driven).zip(&std);
+        let channels = of_simulation.iter().zip(driven).zip(&std);
         let floor = channels.map(|((accuracy, driven), std)| {
-            let share = accuracy.hypot(driven.beyond(0.0).sqrt()) / std;
+            let share = accuracy.hypot(driven.sqrt()) / std;
             if share.is_finite() {
                 share.min(1.0)
             } else {
                 1.0
             }
         });
-        let noise = NoiseModel {
-            effective_share: vec![],
+        Ok(NoiseModel {
+            effective_share: shares(residual, std.len(), |left| {
+                Ok(effective_sample_count(left)?.max(independent_sample_count(left)?))
+            }),
             floor: floor.collect(),
-        };
-        Ok(noise.with_colour_of(residual))
+            std,
+        })
     }
 
     /// The same with the colour of what another fit leaves.
     #[must_use]
     pub fn with_colour_of(&self, residual: &Fit) -> NoiseModel {
         NoiseModel {
-            effective_share: effective_share(residual, self.floor.len()),
-            floor: self.floor.clone(),
+            effective_share: share_of_variance(residual, &self.std),
+            ..self.clone()
         }
     }
 
@@ -104,16 +112,34 @@ impl NoiseModel {
     }
 }
 
-/// Share of independent samples in the discrepancy of each channel.
-fn effective_share(fit: &Fit, channels: usize) -> Vec<f64> {
+/// Share of independent samples in the variance of the discrepancy of each channel: its own or, if that is less, the mean over all channels, each by what it
+/// leaves of its motion. What is left where most is would otherwise count for less than traces in a channel that is all but explained.
+fn share_of_variance(fit: &Fit, std: &[f64]) -> Vec<f64> {
+    let own = shares(fit, std.len(), independent_sample_count);
+    let left = fit.variance.iter().zip(std);
+    let left: Vec<f64> = left.map(|(left, std)| left / (std * std)).collect();
+    let all: f64 = left.iter().sum();
+    let weighted = own.iter().zip(&left).map(|(share, left)| share * left);
+    let mean = weighted.sum::<f64>() / all;
+    // Where nothing is left at all, or a channel does not move, each has its own.
+    let most = if mean.is_finite() { mean } else { 1.0 };
+    own.into_iter().map(|share| share.min(most)).collect()
+}
+
+/// Independent samples, as they are counted, per sample of the discrepancy of each channel.
+fn shares(
+    fit: &Fit,
+    channels: usize,
+    count_in: impl Fn(&[f64]) -> Result<f64, SignalError>,
+) -> Vec<f64> {
     let of_channel = |c: usize| {
-        let (mut effective, mut total) = (0.0, 0.0);
+        let (mut independent, mut total) = (0.0, 0.0);
         for run in &fit.discrepancy {
             let count = run[c].len() as f64;
-            effective += effective_sample_count(&run[c]).unwrap_or(count).min(count);
+            independent += count_in(&run[c]).unwrap_or(count).min(count);
             total += count;
         }
-        (effective / f64::max(total, 1.0)).clamp(1e-4, 1.0)
+        (independent / f64::max(total, 1.0)).clamp(1e-4, 1.0)
     };
     (0..channels).map(of_channel).collect()
 }

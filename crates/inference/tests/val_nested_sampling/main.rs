@@ -45,6 +45,7 @@ const DRAWS: usize = 10_000;
 struct Solved {
     problem: Problem,
     space: ModelSpace,
+    noise: NoiseModel,
     options: FitOptions,
     set: CandidateModel,
 }
@@ -83,12 +84,14 @@ impl Solved {
             budget,
         );
         let first = search.fit(&start).unwrap();
-        search.options = noise.with_colour_of(&first.fit).search_options();
+        let noise = noise.with_colour_of(&first.fit);
+        search.options = noise.search_options();
         let set = search.fit(&first.fit.estimate).unwrap();
         let options = search.options.clone();
         Solved {
             problem,
             space,
+            noise,
             options,
             set,
         }
@@ -108,23 +111,20 @@ impl Solved {
 
     /// The same set fitted to the end from another start, if ln Z is finite there.
     fn again(&self, start: &Start) -> Option<Solved> {
-        let noise = NoiseModel {
-            effective_share: self.options.effective_share.clone(),
-            floor: self.options.floor.clone(),
-        };
         let budget = Budget {
             progress: &|_| {},
             is_spent: &|| false,
         };
         let gap = self.problem.output_std();
-        let mut search = Search::new(&self.problem, &noise, self.space.clone(), &gap, budget);
-        search.options = noise.final_options();
+        let mut search = Search::new(&self.problem, &self.noise, self.space.clone(), &gap, budget);
+        search.options = self.noise.final_options();
         let set = search.fit(start).ok()?;
         let mut problem = self.problem.with_runs(self.problem.runs.clone());
         problem.leaves_out_ends = true;
         set.log_marginal_likelihood.is_finite().then(|| Solved {
             problem,
             space: self.space.clone(),
+            noise: self.noise.clone(),
             options: self.options.clone(),
             set,
         })
