@@ -355,9 +355,10 @@ fn the_sentences_hold(reader: &mut Reader) {
         low < 7.0 && 7.0 < high && high - low < 1.0,
         "{low} to {high}"
     );
-    // The two levels of the richer law are almost one, and it predicts hardly better.
-    let [[sliding, _], [_, breakaway]] = [interval(&doubt, 0), interval(&doubt, 1)];
-    assert!(5.5 < sliding && breakaway < 7.5, "{sliding} to {breakaway}");
+    // The data do not tell the two levels of the richer law apart, both may be what is in the file, and it predicts hardly better.
+    let levels = [interval(&doubt, 0), interval(&doubt, 1)];
+    let holds_seven = |[low, high]: [f64; 2]| low < 7.0 && 7.0 < high;
+    assert!(levels.into_iter().all(holds_seven), "{levels:?}");
     let of = |d: &serde_json::Value, key: &str| d["gap"][key].as_f64().unwrap();
     assert!(of(&doubt, "corrected") > 0.95 * of(&answer, "corrected"));
     let gap = |key: &str| of(&answer, key);

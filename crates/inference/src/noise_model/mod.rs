@@ -8,8 +8,9 @@
 //! V_c is the squared discrepancy of a channel, n_c the number of its samples that are independent. ε_c comes from the
 //! records and the nominal model ([`accuracy`], [`input_noise`]); what the steps of the march miss of the forces of a set
 //! ([`accuracy_of_steps`]) counts beside it where it is asked whether the set leaves more than that. The share of independent samples is that of one
-//! residual, and the same for all sets that are compared: first what re-estimated parameters leave, then what the best
-//! set leaves, once; before larger sets where a single effect leaves nothing but noise. With it the model discrepancy has an amplitude that every set infers, V_c itself, and a colour
+//! residual, and the same for all sets that are compared: first what re-estimated parameters leave, by the larger of the counts for a mean and
+//! for a variance, so that the search climbs; then what the best
+//! set leaves, by that for a variance, once; before larger sets where a single effect leaves nothing but noise. With it the model discrepancy has an amplitude that every set infers, V_c itself, and a colour
 //! that none of them chooses. Coloured noise of a sensor has its share of independent samples alike. Where noise of the
 //! inputs is integrated by the plant, residuals are whitened before they are squared ([`whitening`]).
 //!
@@ -48,7 +49,7 @@ pub struct NoiseModel {
 }
 
 impl NoiseModel {
-    /// For a problem, with the colour of what a fit of it with re-estimated parameters leaves.
+    /// For the search in a problem, with the colour of what a fit of it with re-estimated parameters leaves.
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.

@@ -225,7 +225,7 @@ pub(crate) fn beyond_a_quadratic() -> Vec<Case> {
             colour: 0.97,
             noise_m: 3e-4,
             ..plan(
-                "cubic spring, nine independent samples",
+                "cubic spring, few independent samples",
                 "cubic_stiffness",
                 table(),
                 &[2e5],
