@@ -155,7 +155,7 @@ pub fn effective_sample_count(residual: &[f64]) -> Result<f64, SignalError> {
 /// its amplitude and its phase. Other than [`effective_sample_count`], which is that of a mean, it counts what a narrow band holds wherever
 /// the band lies.
 ///
-/// Reference: BendatPiersol2010, section 8.3.
+/// Reference: BendatPiersol2010, chapter 8.
 ///
 /// # Errors
 ///
