@@ -153,7 +153,7 @@ pub fn effective_sample_count(residual: &[f64]) -> Result<f64, SignalError> {
 /// spectral density G and the length T of the record; the square of a bin of a periodogram is twice that of its expectation, which
 /// the other factor of two is for. White noise gives N, first-order noise of coefficient φ gives N (1-φ²)/(1+φ²), and a line four to
 /// twelve samples, by where it lies between two bins. Other than [`effective_sample_count`], which is that of a mean, it counts what a narrow band holds wherever
-/// the band lies.
+/// the band lies. What alternates from sample to sample lies in none of the bins, and is worth no more than N here too.
 ///
 /// Reference: BendatPiersol2010, chapter 8.
 ///
@@ -184,6 +184,11 @@ pub fn independent_sample_count(residual: &[f64]) -> Result<f64, SignalError> {
         .fold((0.0, 0.0), |(sum, square), power| {
             (sum + power, square + power * power)
         });
-    let independent = 4.0 * sum * sum / square;
+    // What alternates from sample to sample has no other bins.
+    let independent = if square > 0.0 {
+        4.0 * sum * sum / square
+    } else {
+        count as f64
+    };
     Ok(independent.clamp(1.0, count as f64))
 }

@@ -144,6 +144,8 @@ fn verify_alternating_residual_is_worth_no_more_than_its_samples() {
         .map(|i| if i % 2 == 0 { 1.0 } else { -1.0 })
         .collect();
     assert_eq!(effective_sample_count(&x).unwrap(), 100.0);
+    let whole = independent_sample_count(&x).unwrap();
+    assert!((1.0..=100.0).contains(&whole), "{whole}");
     assert_eq!(
         effective_sample_count(&[2.0; 50]),
         Err(SignalError::Flat { what: "values" })

@@ -60,9 +60,10 @@ impl NoiseModel {
     ) -> Result<NoiseModel, EstimateError> {
         let options = FitOptions::white(problem.model.outputs.len());
         // A model that parts from the machine, a pendulum that turns over where the real one does not, is led away by any noise.
-        let driven = |of: &Fit| input_noise(problem, &of.estimate.nominal, &options, &[]);
-        let driven = driven(baseline)?.into_iter().zip(driven(residual)?);
-        let driven = driven.map(|(given, estimated)| given.beyond(0.0).min(estimated.beyond(0.0)));
+        let noise_through = |fit: &Fit| input_noise(problem, &fit.estimate.nominal, &options, &[]);
+        let (given, estimated) = (noise_through(baseline)?, noise_through(residual)?);
+        let both = given.iter().zip(&estimated);
+        let driven = both.map(|(given, estimated)| given.beyond(0.0).min(estimated.beyond(0.0)));
         let of_simulation = accuracy(problem, baseline)?;
         let std = problem.output_std();
         let channels = of_simulation.iter().zip(driven).zip(&std);
