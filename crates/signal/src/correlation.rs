@@ -85,6 +85,12 @@ pub fn cross_correlation(
     Ok(products[..=max_lag].iter().map(|z| z.re).collect())
 }
 
+/// A signal without its mean.
+pub(crate) fn centred(values: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|v| v - mean).collect()
+}
+
 /// Σ_i t_i c_{i+m} at index m (negative m from the end).
 pub(crate) fn cross_products(t: &[f64], c: &[f64]) -> Vec<Complex64> {
     let len = (2 * t.len()).next_power_of_two();
@@ -175,9 +181,7 @@ pub fn independent_sample_count(residual: &[f64]) -> Result<f64, SignalError> {
         return Err(SignalError::Flat { what: "residual" });
     }
     let count = residual.len();
-    let mean = residual.iter().sum::<f64>() / count as f64;
-    let centred: Vec<f64> = residual.iter().map(|r| r - mean).collect();
-    let half = real_fft(&centred);
+    let half = real_fft(&centred(residual));
     let bins = half.iter().take(count.div_ceil(2)).skip(1);
     let (sum, square) = bins
         .map(|bin| bin.norm_sqr())

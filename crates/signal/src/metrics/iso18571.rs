@@ -1,7 +1,7 @@
 //! Objective rating of ISO/TS 18571: corridor, phase, magnitude, slope.
 
 use super::dtw::warped_sums;
-use crate::correlation::cross_products;
+use crate::correlation::{centred, cross_products};
 use crate::{SignalError, check};
 
 /// Half widths of the inner and outer corridor, parts of the largest measured value (a_0, b_0).
@@ -220,11 +220,6 @@ fn best_shift(measured: &[f64], predicted: &[f64]) -> (isize, f64) {
         }
     }
     best
-}
-
-fn centred(values: &[f64]) -> Vec<f64> {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    values.iter().map(|v| v - mean).collect()
 }
 
 /// Sums and sums of squares of the first 0, 1, … N values.
