@@ -68,6 +68,11 @@ pub trait SignalMap: Send + Sync {
         None
     }
 
+    /// The ends of the range of a sensor, beyond which it shows nothing of its signal.
+    fn range(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Whether the map moves in steps, so that it has no derivative to go by.
     fn is_stepped(&self) -> bool {
         self.step().is_some()

@@ -30,7 +30,7 @@ use crate::candidate_model::{
 use crate::extended::{Extended, Visited};
 use crate::marginal_likelihood::log_marginal_likelihood;
 use crate::model_space::ModelSpace;
-use crate::noise_model::NoiseModel;
+use crate::noise_model::{NoiseModel, log_likelihood_at_range_ends};
 use crate::stage::Stage;
 
 /// Sets of each size that the next size starts from.
@@ -182,8 +182,10 @@ impl<'a> Search<'a> {
 
     pub(crate) fn candidate_model(&self, fit: Fit) -> CandidateModel {
         let scale_at = |at: &simgap_model::Location| self.space.scale_at(at);
+        let at_range_ends = log_likelihood_at_range_ends(self.problem, &fit);
         CandidateModel {
-            log_marginal_likelihood: log_marginal_likelihood(&fit, scale_at, self.nominal),
+            log_marginal_likelihood: log_marginal_likelihood(&fit, scale_at, self.nominal)
+                + at_range_ends.unwrap_or(f64::NEG_INFINITY),
             log_prior: self.space.log_prior(&fit.estimate.effects),
             fit,
         }

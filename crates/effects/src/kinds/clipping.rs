@@ -29,6 +29,10 @@ impl SignalMap for Limits {
             .collect()
     }
 
+    fn range(&self) -> Option<[f64; 2]> {
+        Some([self.low, self.high])
+    }
+
     fn is_lossy(&self) -> bool {
         true
     }
@@ -102,7 +106,7 @@ impl Effect for Clipping {
         &[
             (
                 "end_stop",
-                "a stop cuts off the displacement too, but the machine recoils from it and every channel sees it",
+                "a stop cuts off the displacement too, but the machine recoils from it, every channel sees it, and it gives way a little under the force where a sensor at its limit shows noise alone",
             ),
             (
                 "sensor_gain",

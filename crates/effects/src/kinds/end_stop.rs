@@ -150,7 +150,7 @@ impl Effect for EndStop {
             ),
             (
                 "clipping",
-                "the displacement stays within limits under both, but a stop also brakes the machine",
+                "the displacement stays within limits under both, but a stop also brakes the machine, and gives way a little under the force",
             ),
         ]
     }

@@ -18,11 +18,13 @@
 
 mod accuracy;
 mod input_noise;
+mod range_ends;
 mod sensor;
 mod whitening;
 
 pub use accuracy::{accuracy, accuracy_of_steps};
 pub use input_noise::{InputNoise, input_noise};
+pub(crate) use range_ends::log_likelihood_at_range_ends;
 pub use sensor::{
     is_sensor_noise, noise_variance, rounding_variance, stepped, stored_rounding_variance,
 };

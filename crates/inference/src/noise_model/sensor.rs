@@ -175,7 +175,7 @@ fn short_noise(values: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     #[test]
@@ -196,7 +196,7 @@ mod tests {
         assert!(of(true) > 0.0);
     }
 
-    fn white(count: usize) -> Vec<f64> {
+    pub(in crate::noise_model) fn white(count: usize) -> Vec<f64> {
         let mut word = 11_u64;
         let mut unit = || {
             word = word
