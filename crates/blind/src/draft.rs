@@ -160,6 +160,10 @@ fn sized(
         return Ok(false);
     };
     placed.values = values(factor);
+    // What the catalogue knows of no machine is in no case.
+    if !effect.has_support(&placed.values, &scale) {
+        return Ok(false);
+    }
     if strikes {
         let benches = draft.benches.iter_mut();
         benches.for_each(|bench| bench.struck_share = factor);

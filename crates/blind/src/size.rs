@@ -56,11 +56,16 @@ pub(crate) fn site_scale(
         Location::Channel(name) => model.output_index(name),
         _ => None,
     };
-    let springs = model.springs.iter().filter(|spring| match at {
-        Location::Between(pair) => simgap_model::same_pair(&spring.between, pair),
+    let is_here = |between: &[String; 2]| match at {
+        Location::Between(pair) => simgap_model::same_pair(between, pair),
         _ => false,
-    });
+    };
+    let springs = model.springs.iter();
+    let springs = springs.filter(|spring| is_here(&spring.between));
     let stiffness: f64 = springs.map(|spring| spring.stiffness).sum();
+    let dampers = model.dampers.iter();
+    let dampers = dampers.filter(|damper| is_here(&damper.between));
+    let damping: f64 = dampers.map(|damper| damper.damping).sum();
     let force_n = positive(if inertia > 0.0 {
         inertia
     } else {
@@ -83,6 +88,13 @@ pub(crate) fn site_scale(
             force_n / positive(std(&path.displacement))
         },
         mass_kg: lightest,
+        has_spring: stiffness > 0.0,
+        has_damper: damping > 0.0,
+        damping_n_s_per_m: if damping > 0.0 {
+            damping
+        } else {
+            force_n / positive(std(&path.velocity))
+        },
         ..SiteScale::plain(
             positive(std(&path.displacement)),
             positive(std(&path.velocity)),

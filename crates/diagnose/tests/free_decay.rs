@@ -45,9 +45,15 @@ kind = "displacement"
 at = "beam"
 "#;
 
-/// A record of a plant with effects, let go from a state of its own: its channels have noise of their resolution and are
+/// A record of a plant with effects, let go from a state: its channels have noise of their resolution and are
 /// stored in steps of it.
-fn record(model: &Model, effects: &[Placed], number: usize, resolution: [f64; 2]) -> Record {
+fn record(
+    model: &Model,
+    effects: &[Placed],
+    number: usize,
+    state: &[f64],
+    resolution: &[f64],
+) -> Record {
     let run = Run {
         name: format!("{number}.csv"),
         start_s: 0.0,
@@ -59,10 +65,7 @@ fn record(model: &Model, effects: &[Placed], number: usize, resolution: [f64; 2]
         mended: simgap_simulate::Mended::default(),
     };
     let simulator = Simulator::new(model, effects, 1).unwrap();
-    let tip = [0.03, 0.02, -0.025][number];
-    let mut state = vec![0.0; simulator.state_len()];
-    (state[0], state[1]) = (0.5 * tip, tip);
-    let outputs = simulator.predict(&run, &state).unwrap();
+    let outputs = simulator.predict(&run, state).unwrap();
     let mut noise = Noise(number as u64);
     let channels = outputs.iter().zip(&model.outputs).zip(resolution);
     let channels = channels.map(|((signal, output), resolution)| {
@@ -77,8 +80,12 @@ fn record(model: &Model, effects: &[Placed], number: usize, resolution: [f64; 2]
 
 fn diagnosed(effects: &[Placed], resolution: [f64; 2], limit: Limit<'_>) -> Outcome {
     let model = Model::from_toml(PLANT).unwrap();
-    let records: Vec<Record> = (0..3)
-        .map(|number| record(&model, effects, number, resolution))
+    let tips = [0.03, 0.02, -0.025].into_iter().enumerate();
+    let records: Vec<Record> = tips
+        .map(|(number, tip)| {
+            let state = [0.5 * tip, tip, 0.0, 0.0];
+            record(&model, effects, number, &state, &resolution)
+        })
         .collect();
     let request = Request {
         limit,
@@ -124,6 +131,36 @@ fn verify_nothing_is_added_to_a_wrong_damping_within_coarse_steps() {
         [("damping_error".to_string(), at)],
         "{verdict:?}"
     );
+}
+
+/// An angle in degrees that the model takes for radians: from what it says a pendulum would turn over, and no fit of the gain finds back.
+#[test]
+fn verify_degrees_for_radians_are_told_of_a_pendulum() {
+    let model = Model::from_toml(
+        "schema = \"simgap-model/1\"\nname = \"arm\"\n[[mass]]\nname = \"arm\"\nvalue = 0.02\n\
+         [[damper]]\nname = \"pivot\"\nbetween = [\"arm\", \"ground\"]\ndamping = 0.012\n\
+         [[pendulum]]\nat = \"arm\"\nvalue = 0.6\n\
+         [[output]]\nchannel = \"phi\"\nkind = \"displacement\"\nat = \"arm\"\n",
+    )
+    .unwrap();
+    let at = Location::Channel("phi".into());
+    let degrees = 180.0 / std::f64::consts::PI;
+    let truth = [placed("sensor_gain", at.clone(), &[degrees])];
+    let angles = [1.9, 2.3, -2.1].into_iter().enumerate();
+    let records: Vec<Record> = angles
+        .map(|(number, angle)| record(&model, &truth, number, &[angle, 0.0], &[0.05]))
+        .collect();
+    let request = Request::new(&model, &records[..2], &records[2..]);
+    let outcome = diagnose(&request, &|_| {}).unwrap();
+    let verdict = &outcome.diagnosis.verdict;
+    assert_eq!(
+        named(&outcome),
+        [("sensor_gain".to_string(), at)],
+        "{verdict:?}"
+    );
+    let gain = &verdict.effects[0].parameters[0];
+    assert!((gain.value / degrees - 1.0).abs() < 0.01, "{gain:?}");
+    assert!(verdict.complete, "{verdict:?}");
 }
 
 /// A search that has spent its work ends with what it has, and says so.

@@ -26,7 +26,7 @@ pub fn fit_initial_states(
     let all = of_file.iter().chain(effects).cloned();
     let (own, given): (Vec<Placed>, Vec<Placed>) = all.partition(|p| !p.own_places().is_empty());
     fixed.given = given;
-    let mut initial = problem.initial_guess();
+    let mut initial = fixed.initial_guess();
     if own.is_empty() {
         if fixed.given.iter().any(|placed| fixed.shows_travel(placed)) {
             for (run, state) in fixed.runs.iter().zip(&mut initial) {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use simgap_effects::{
-    Action, Effect, Family, Placed, Prior, SiteScale, catalogue_of, own_laws, places_of,
+    Action, Effect, Family, Placed, Prior, Sampled, SiteScale, catalogue_of, own_laws, places_of,
 };
 use simgap_model::{DEFAULT_UNCERTAINTY, Form, Location, Model, Node, OutputKind};
 use simgap_simulate::{ExternalPlant, Job, Run, Simulator, predict_all, substeps_for};
@@ -351,6 +351,7 @@ impl Problem {
                         continue;
                     };
                     let first = values.first().copied().unwrap_or(0.0);
+                    let first = first / self.gain_of(&output.channel);
                     match reading.form {
                         Form::Displacement => state[i] = first,
                         Form::Velocity => state[n + i] = first,
@@ -364,6 +365,36 @@ impl Problem {
                 state
             })
             .collect()
+    }
+}
+
+/// Samples of a constant signal.
+const CONSTANT: usize = 8;
+
+impl Problem {
+    /// By how much the effects of the model file and those held beside them multiply a constant signal of a channel; what takes from
+    /// samples what they held has no gain.
+    fn gain_of(&self, channel: &str) -> f64 {
+        let here = self.given.iter();
+        let here = here.filter(|placed| placed.at == Location::Channel(channel.into()));
+        let gains = here.filter_map(|placed| match placed.action() {
+            Action::Output(map) | Action::Sampling(map) if !map.is_lossy() => {
+                let of = |value: f64| {
+                    let signal = [value; CONSTANT];
+                    map.apply(Sampled::from_start(&signal, 1.0))
+                        .first()
+                        .copied()
+                };
+                of(1.0).zip(of(0.0)).map(|(one, zero)| one - zero)
+            }
+            _ => None,
+        });
+        let gain: f64 = gains.product();
+        // One but for rounding, or none.
+        match gain.is_normal() && (gain - 1.0).abs() > 1e-9 {
+            true => gain,
+            false => 1.0,
+        }
     }
 }
 

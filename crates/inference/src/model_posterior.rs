@@ -16,6 +16,7 @@ use simgap_estimate::EstimateError;
 
 use crate::asked::Asked;
 use crate::candidate_model::{CandidateModel, INDISTINGUISHABLE, is_nominal, name, rank, remove};
+use crate::motion;
 use crate::search::Search;
 use crate::shapley::shapley_values;
 
@@ -159,9 +160,10 @@ impl Search<'_> {
             if !is_relevant {
                 return Ok(Some(place));
             }
-            // A law beyond a special case of it is held to the same.
+            // A law beyond a special case of it is held to the same, by what they differ by.
             for special in self.shrink(set, i) {
-                let is_relevant = self.is_relevant(set, &special, &moved);
+                let beyond = motion::between(&set.fit, &special.fit);
+                let is_relevant = self.is_relevant(set, &special, &beyond);
                 let place = asked.place(special);
                 if !is_relevant {
                     return Ok(Some(place));

@@ -228,6 +228,7 @@ impl<'a> Search<'a> {
         self.tell(Stage::Singles);
         let linear = linearise_at(self.problem, &base.fit, &self.options)?;
         pool.extend(self.extend_at(base, &linear, FITTED[0])?);
+        pool.extend(self.slips(base));
         rank(&mut pool);
         let is_settled = self.settle(&mut pool, 0)?;
         if is_settled || !self.leaves_noise_by_its_colour(&pool) {

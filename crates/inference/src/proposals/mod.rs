@@ -8,6 +8,7 @@ mod multiple_shooting;
 mod multistart;
 mod recalibrated;
 mod rescaled;
+mod slips;
 mod unite;
 
 pub(crate) use add::{FINISHED, ROUGH_STEPS};
