@@ -82,24 +82,13 @@ pub(crate) fn site_scale(
             (None, None) => [-1.0, 1.0],
         },
         signal_step: 0.1 * positive(signal),
-        stiffness_n_per_m: if stiffness > 0.0 {
-            stiffness
-        } else {
-            force_n / positive(std(&path.displacement))
-        },
         mass_kg: lightest,
-        has_spring: stiffness > 0.0,
-        has_damper: damping > 0.0,
-        damping_n_s_per_m: if damping > 0.0 {
-            damping
-        } else {
-            force_n / positive(std(&path.velocity))
-        },
         ..SiteScale::plain(
             positive(std(&path.displacement)),
             positive(std(&path.velocity)),
             force_n,
         )
+        .with_members(stiffness, damping)
     })
 }
 

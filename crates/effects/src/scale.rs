@@ -75,4 +75,19 @@ impl SiteScale {
             motion_hz: [0.0; LINES],
         }
     }
+
+    /// The same with the nominal members of the site, whose stiffnesses and dampings sum up to these; where the model has none, the sizes of
+    /// the motion stay.
+    #[must_use]
+    pub fn with_members(self, stiffness_n_per_m: f64, damping_n_s_per_m: f64) -> SiteScale {
+        let (has_spring, has_damper) = (stiffness_n_per_m > 0.0, damping_n_s_per_m > 0.0);
+        let own = |has: bool, nominal: f64, of_motion: f64| if has { nominal } else { of_motion };
+        SiteScale {
+            has_spring,
+            has_damper,
+            stiffness_n_per_m: own(has_spring, stiffness_n_per_m, self.stiffness_n_per_m),
+            damping_n_s_per_m: own(has_damper, damping_n_s_per_m, self.damping_n_s_per_m),
+            ..self
+        }
+    }
 }

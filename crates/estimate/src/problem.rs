@@ -366,12 +366,7 @@ impl Problem {
             })
             .collect()
     }
-}
 
-/// Samples of a constant signal.
-const CONSTANT: usize = 8;
-
-impl Problem {
     /// By how much the effects of the model file and those held beside them multiply a constant signal of a channel; what takes from
     /// samples what they held has no gain.
     fn gain_of(&self, channel: &str) -> f64 {
@@ -379,13 +374,8 @@ impl Problem {
         let here = here.filter(|placed| placed.at == Location::Channel(channel.into()));
         let gains = here.filter_map(|placed| match placed.action() {
             Action::Output(map) | Action::Sampling(map) if !map.is_lossy() => {
-                let of = |value: f64| {
-                    let signal = [value; CONSTANT];
-                    map.apply(Sampled::from_start(&signal, 1.0))
-                        .first()
-                        .copied()
-                };
-                of(1.0).zip(of(0.0)).map(|(one, zero)| one - zero)
+                let of = |value: f64| map.apply(Sampled::from_start(&[value; 8], 1.0))[0];
+                Some(of(1.0) - of(0.0))
             }
             _ => None,
         });

@@ -76,24 +76,13 @@ impl Problem {
             signal_range,
             signal_step,
             signal_level,
-            stiffness_n_per_m: if stiffness > 0.0 {
-                stiffness
-            } else {
-                force_n / displacement_m
-            },
-            damping_n_s_per_m: if damping > 0.0 {
-                damping
-            } else {
-                force_n / velocity_m_per_s
-            },
-            has_spring: stiffness > 0.0,
-            has_damper: damping > 0.0,
             mass_kg: at_port.or(mass_at(&self.model, at)).unwrap_or(1.0),
             lines_hz: self.lines_left(fit, at),
             carriers_hz: self.carriers_left(fit, at),
             late_s: self.late(fit, at),
             motion_hz: lines(&[moved.unwrap_or_default()], step),
             ..SiteScale::plain(displacement_m, velocity_m_per_s, force_n)
+                .with_members(stiffness, damping)
         })
     }
 

@@ -34,7 +34,8 @@ pub(crate) fn log_likelihood_at_range_ends(
 ) -> Result<f64, EstimateError> {
     let mut log = 0.0;
     for placed in &fit.estimate.effects {
-        if let (Action::Sampling(map), Location::Channel(name)) = (placed.action(), &placed.at)
+        if let Location::Channel(name) = &placed.at
+            && let Action::Sampling(map) = placed.action()
             && let Some(range) = map.range()
             && let Some(channel) = problem.model.output_index(name)
         {
@@ -50,10 +51,10 @@ pub(crate) fn log_likelihood_at_range_ends(
 fn without(
     problem: &Problem,
     fit: &Fit,
-    range: &Placed,
+    limit: &Placed,
     channel: usize,
 ) -> Result<Vec<[f64; 2]>, EstimateError> {
-    let is_other = |placed: &&Placed| !std::ptr::eq(*placed, range);
+    let is_other = |placed: &&Placed| !std::ptr::eq(*placed, limit);
     let others: Vec<Placed> = fit.estimate.placed().filter(is_other).cloned().collect();
     let mut samples = vec![];
     for (r, (run, initial)) in problem.runs.iter().zip(&fit.estimate.initial).enumerate() {

@@ -5,15 +5,13 @@
 
 use rayon::prelude::*;
 use simgap_effects::{Placed, Prior, SLIPS};
-use simgap_estimate::{Candidate, FitOptions, Start, fit_initial_states};
+use simgap_estimate::{Candidate, Start, fit_initial_states};
 
 use crate::candidate_model::{CandidateModel, add, straight};
 use crate::search::Search;
 
 /// Share of the mean square of a channel that a model leaves at least which is off by a slip: the smallest are 2π and the sign.
 const LEFT: f64 = 0.5;
-/// Steps of a fit of initial states, enough to tell slips apart.
-const STEPS: usize = 6;
 
 impl Search<'_> {
     /// Each gain with its likeliest slip in the place of what it is, where `base` leaves most of a channel.
@@ -35,10 +33,6 @@ impl Search<'_> {
 
     /// A gain with the slip that leaves least, fitted.
     fn slip(&self, base: &CandidateModel, gain: &Candidate) -> Option<CandidateModel> {
-        let few = FitOptions {
-            most_steps: STEPS,
-            ..self.options.clone()
-        };
         let beside = Start {
             nominal: straight(base),
             ..base.fit.estimate.clone()
@@ -47,7 +41,7 @@ impl Search<'_> {
             let slip = Placed::new(gain.effect, gain.at.clone(), vec![factor]);
             let mut start = add(&beside, slip);
             let placed: Vec<Placed> = start.placed().cloned().collect();
-            let found = fit_initial_states(self.problem, &placed, &few).ok()?;
+            let found = fit_initial_states(self.problem, &placed, &self.options).ok()?;
             start.initial.clone_from(&found.estimate.initial);
             Some((found.misfit, start))
         };
