@@ -78,7 +78,9 @@ pub(crate) fn decide(
         to_explain: gap.to_explain(),
         other,
     };
-    if decision.other.probability > LIKELIER_THAN_NOT {
+    // A gap of which the empty set leaves a share that counts is no noise.
+    let nothing_explains = best.effects().is_empty() && decision.other.left > RELEVANT_SHARE;
+    if decision.other.probability > LIKELIER_THAN_NOT || nothing_explains {
         decision.status = Status::Unknown;
         let law = decision.other.law.as_ref();
         decision.start = law.map_or(&base.fit, |law| &law.fit).estimate.clone();

@@ -33,6 +33,8 @@ pub(crate) fn verdict(
     units: &Units,
 ) -> Verdict {
     let is_unknown = decision.status == Status::Unknown || checked.is_refuted;
+    // Where nothing is named there is nothing to refute.
+    let refuted = checked.is_refuted && !decision.effects.is_empty();
     // For `unknown` the final fit is that of something else: the values are those of the search.
     let fitted = match is_unknown {
         true => decision.posterior.best().map(|best| &best.fit),
@@ -61,14 +63,14 @@ pub(crate) fn verdict(
         status,
         complete: checked.is_complete && !is_unknown,
         unexplained: unexplained(model, checked),
-        refuted: checked.is_refuted,
+        refuted,
         other: OtherCause {
             probability: decision.other.probability,
             at: decision.other.law.as_ref().map(|law| law.placed.at.clone()),
             closed: decision.other.law.as_ref().map(|law| 1.0 - law.left),
         },
         description: match status {
-            Status::Unknown => description(model, decision, checked),
+            Status::Unknown => description(model, decision, checked, refuted),
             _ => vec![],
         },
         effects,
@@ -217,9 +219,14 @@ fn unconnected(checked: &Checked) -> impl Iterator<Item = &str> {
     unmoved.map(|c| c.channel.as_str())
 }
 
-fn description(model: &Model, decision: &Decision, checked: &Checked) -> Vec<String> {
+fn description(
+    model: &Model,
+    decision: &Decision,
+    checked: &Checked,
+    refuted: bool,
+) -> Vec<String> {
     let mut sentences = vec![];
-    if checked.is_refuted {
+    if refuted {
         sentences.push(
             "the check records refute the best set: it predicts them no better than re-estimated parameters do".into(),
         );

@@ -20,7 +20,7 @@ use simgap_effects::{LocalPrior, Placed};
 use simgap_estimate::Owner;
 use simgap_model::Location;
 
-use crate::candidate_model::CandidateModel;
+use crate::candidate_model::{CandidateModel, is_nominal};
 use crate::model_space::ModelSpace;
 
 /// Values of a set that agree.
@@ -40,7 +40,8 @@ pub(crate) fn coincidence(set: &CandidateModel, space: &ModelSpace) -> Option<Co
     let effects = set.effects();
     let mut found: Vec<Coincidence> = vec![];
     for (i, placed) in effects.iter().enumerate() {
-        if let Some([a, b]) = placed.effect.coincidence() {
+        let pair = placed.effect.coincidence();
+        if let Some([a, b]) = pair.filter(|_| is_another_law(placed, effects)) {
             found.extend(posterior.compare((i, a), (i, b), effects));
         }
         for (j, other) in effects.iter().enumerate().skip(i + 1) {
@@ -56,6 +57,13 @@ pub(crate) fn coincidence(set: &CandidateModel, space: &ModelSpace) -> Option<Co
     }
     let found = found.into_iter().filter(|known| known.log_odds > 0.0);
     found.max_by(|a, b| a.log_odds.total_cmp(&b.log_odds))
+}
+
+/// Whether a law whose two values agree is another one: one of its special cases, or a law about rest that took a wrong nominal value
+/// at its place to make. Without these it is alike on both sides, as most machines are.
+fn is_another_law(placed: &Placed, effects: &[Placed]) -> bool {
+    let mut beside = effects.iter().filter(|other| other.at == placed.at);
+    !placed.effect.contains().is_empty() || beside.any(is_nominal)
 }
 
 /// Normal approximations of prior and posterior in the coordinates of the prior.

@@ -8,6 +8,8 @@ use crate::unit::{estimate, is_fitted};
 
 /// Below this a named effect is called the likely cause, not the cause.
 pub(crate) const SURE: f64 = 0.9;
+/// Up to this a cause outside the catalogue is not called the likelier one.
+const LIKELIER_THAN_NOT: f64 = 0.5;
 
 /// A catalogue name in words: "Coulomb friction", "wrong stiffness".
 pub(crate) fn kind(kind: &str) -> String {
@@ -136,6 +138,14 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
     match diagnosis.verdict.status {
         Status::None => format!(
             "The gap of {} is measurement noise; nothing to add to the model.",
+            ratio(gap.nominal)
+        ),
+        Status::Unknown if diagnosis.verdict.refuted => format!(
+            "What explains the gap of {} best is refuted by the check records; nothing is blamed.",
+            ratio(gap.nominal)
+        ),
+        Status::Unknown if diagnosis.verdict.other.probability <= LIKELIER_THAN_NOT => format!(
+            "Nothing that was tried explains the gap of {}; nothing is blamed.",
             ratio(gap.nominal)
         ),
         Status::Unknown => format!(

@@ -68,9 +68,10 @@ impl Effect for Backlash {
         const { &[Parameter::size("gap_m", "m", 0.0, f64::INFINITY)] }
     }
 
-    /// The force grows in proportion to a small play only: larger ones have starts of their own.
+    /// The force grows in proportion to a small play only: larger ones have starts of their own. What a stiff spring gives way is no
+    /// measure of its play, which may be many times as wide.
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
-        [0.05, 0.2, 0.8, 2.0]
+        [0.05, 0.2, 0.8, 3.0, 12.0, 50.0]
             .map(|share| vec![share * scale.displacement_m])
             .to_vec()
     }

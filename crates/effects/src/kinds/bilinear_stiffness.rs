@@ -97,7 +97,7 @@ impl Effect for BilinearStiffness {
         }
     }
 
-    /// Alike on both sides it is a law about rest, like a clearance, not one of two sides.
+    /// Alike on both sides, and beside a wrong stiffness, it is a law about rest, like a clearance, not one of two sides.
     fn coincidence(&self) -> Option<[usize; 2]> {
         Some([1, 2])
     }
