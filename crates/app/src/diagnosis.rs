@@ -11,7 +11,7 @@ use simgap_record::{AuditFinding, AuditTopic, Record};
 use simgap_report::page::{PictureFile, Report, ReportContext, ReportInput, report};
 use simgap_simulate::ExternalPlant;
 
-use crate::folder::Folder;
+use crate::folder::{Folder, not_an_input};
 use crate::input::{Input, RecordOptions, conversions, idle_masses};
 use crate::manifest::Results;
 use crate::text::{command, file_name, stem};
@@ -120,7 +120,15 @@ impl Question<'_> {
             .iter()
             .map(|input| stem(&input.path))
             .collect();
-        Folder::attempt(out, &[PREDICTIONS, PICTURES], &files(out, &stems, &[]))
+        let files = files(out, &stems, &[]);
+        let records = self.train.iter().chain(self.check);
+        let records = records.filter(|input| input.is_file);
+        let records = records.map(|input| input.path.as_path());
+        let inputs: Vec<&Path> = self.model_file.into_iter().chain(records).collect();
+        files
+            .iter()
+            .try_for_each(|file| not_an_input(file, &inputs))?;
+        Folder::attempt(out, &[PREDICTIONS, PICTURES], &files)
     }
 
     /// Does the work.

@@ -70,14 +70,14 @@ pub(crate) struct DiagnoseArgs {
     #[arg(long, value_name = "KIND")]
     pub(crate) withhold: Vec<String>,
     /// Threads; the result does not depend on it [default: all cores].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) jobs: Option<usize>,
     /// Also writes `sets.json`: every set of effects that was fitted, with the terms that decide between them.
     #[arg(long)]
     pub(crate) sets: bool,
     /// Seconds after which the search ends with the best answer so far; without it the search ends after so much work, the same
     /// on every machine, about a minute of one core.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) budget: Option<f64>,
     /// Seed of anything random; the diagnosis has nothing random so far.
     #[arg(long, value_name = "S", default_value_t = 0)]
@@ -85,6 +85,13 @@ pub(crate) struct DiagnoseArgs {
     /// What is printed.
     #[arg(long, value_enum, default_value = "human")]
     pub(crate) format: Format,
+}
+
+/// A time to spend.
+fn seconds(text: &str) -> Result<f64, &'static str> {
+    let seconds = text.parse().ok();
+    let seconds = seconds.filter(|seconds: &f64| seconds.is_finite() && *seconds >= 0.0);
+    seconds.ok_or("no time to spend")
 }
 
 #[derive(Args)]

@@ -245,9 +245,7 @@ pub(crate) fn role(unit: &str) -> &'static str {
         Some(Quantity::Displacement) => "output, or base input: displacement",
         Some(Quantity::Velocity) => "output: velocity",
         Some(Quantity::Acceleration) => "output: acceleration",
-        Some(Quantity::Pressure | Quantity::Flow | Quantity::Number) | None => {
-            "either, with a gain"
-        }
+        _ => "either, with a gain",
     }
 }
 

@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use simgap_app::folder::Folder;
 use simgap_diagnose::Cancel;
 use simgap_fleet::{Counts, Plan, run, units};
 
@@ -16,6 +17,8 @@ pub(crate) fn run_fleet(args: &FleetArgs) -> Result<(), CliError> {
     let jobs = checked_jobs(args.jobs)?.unwrap_or_else(cores);
     let plan = Plan::read(&args.plan)?;
     let units = units(&plan, None)?;
+    // A folder that cannot be written to is told before the work, not after it.
+    Folder::attempt(&args.out, &[], &[])?;
     let bar = ProgressBar::with_draw_target(Some(units.len() as u64), ProgressDrawTarget::stderr());
     if let Ok(style) =
         ProgressStyle::with_template("{elapsed} {pos} of {len} diagnoses, {eta} left")

@@ -29,12 +29,12 @@ pub(crate) fn one_line(error: &clap::Error, arguments: &[String]) -> Option<Stri
             of(ContextKind::ValidValue)
         ),
         ErrorKind::ValueValidation => {
-            let whole = if argument.contains("PERCENT") {
-                ""
-            } else {
-                "whole "
+            let needed = match &argument {
+                percent if percent.contains("PERCENT") => "a number",
+                seconds if seconds.contains("SECONDS") => "a number of seconds, zero or more",
+                _ => "a whole number",
             };
-            format!("{argument} is \"{value}\", needed is a {whole}number")
+            format!("{argument} is \"{value}\", needed is {needed}")
         }
         _ => first_line(&error.to_string()),
     };

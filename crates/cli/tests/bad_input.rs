@@ -375,7 +375,55 @@ fn regress_places_to_write() {
     }
     let line = bench.refused(&["demo", "--out", "file"]);
     writeln!(table, "demo --out \"file\": {line}").unwrap();
+    // The model and a record lie where the results would go.
+    let good = |name: &str| std::fs::read_to_string(bench.path(name)).unwrap();
+    bench.write("again/corrected.toml", good("model.toml"));
+    bench.write("again/predictions/A.csv", good("A.csv"));
+    let (model, record) = ("again/corrected.toml", "again/predictions/A.csv");
+    for (model, train) in [(model, "A.csv"), ("model.toml", record)] {
+        let line = bench.refused(&["diagnose", model, "--train", train, "--out", "again"]);
+        writeln!(table, "diagnose {model} --train {train}: {line}").unwrap();
+    }
     insta::assert_snapshot!(table);
+}
+
+#[test]
+fn verify_a_channel_has_one_unit_in_all_records() {
+    let bench = Bench::good();
+    let record = std::fs::read_to_string(bench.path("A.csv")).unwrap();
+    let header = record.lines().next().unwrap();
+    let names: Vec<&str> = header.split(',').collect();
+    let last = names.last().unwrap();
+    let (name, _) = last.split_once(" [").unwrap();
+    let turned = header.replace(last, &format!("{name} [deg]"));
+    bench.write("B.csv", record.replacen(header, &turned, 1));
+    let args = [
+        "diagnose",
+        "model.toml",
+        "--train",
+        "A.csv",
+        "--train",
+        "B.csv",
+    ];
+    let line = bench.refused(&[&args[..], &["--out", "out"]].concat());
+    assert!(line.contains("B.csv: column"), "{line}");
+    assert!(line.contains("is in deg, and in"), "{line}");
+    assert!(
+        line.contains("in A.csv: needed is one unit for all records"),
+        "{line}"
+    );
+}
+
+#[test]
+fn verify_a_member_has_two_ends() {
+    let bench = Bench::good();
+    let model = std::fs::read_to_string(bench.path("model.toml")).unwrap();
+    let begin = model.find("between = [").unwrap();
+    let end = begin + model[begin..].find(']').unwrap();
+    let three = format!("{}, \"ground\"{}", &model[..end], &model[end..]);
+    bench.write("three.toml", three);
+    let line = bench.refused(&["modes", "three.toml"]);
+    assert!(line.contains("invalid length 3"), "{line}");
 }
 
 /// Root may write where the mode forbids it, so this says nothing there.

@@ -7,7 +7,7 @@ use simgap_record::Record;
 use simgap_simulate::Run;
 
 use crate::DiagnoseError;
-use crate::units::Units;
+use crate::units::{Units, refuse_other_units};
 
 /// Share of each record that is held back when no check record is given.
 const HELD_BACK: f64 = 1.0 / 3.0;
@@ -41,6 +41,8 @@ pub(crate) fn divide<R: Borrow<Record>>(
     if check.is_empty() && model.is_external() {
         return Err(DiagnoseError::NoCheckRecord);
     }
+    let all: Vec<&Record> = train.iter().chain(check).map(Borrow::borrow).collect();
+    refuse_other_units(model, &all)?;
     let run = |record: &Record, part: &'static str| -> Result<Run, DiagnoseError> {
         let run = Run::with_outputs(model, record)?;
         for (output, measured) in model.outputs.iter().zip(&run.measured) {

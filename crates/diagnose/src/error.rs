@@ -42,6 +42,20 @@ pub enum DiagnoseError {
         /// `learn from` or `judge by`.
         purpose: &'static str,
     },
+    /// A channel in one unit here and in another there.
+    #[error(
+        "{record}: column \"{channel}\" is in {found}, and in {known}: needed is one unit for all records"
+    )]
+    OtherUnit {
+        /// Record.
+        record: String,
+        /// Column.
+        channel: String,
+        /// Its unit.
+        found: String,
+        /// The unit of the first record, and which that is.
+        known: String,
+    },
     /// A measured output that never changes has no scale to compare with.
     #[error(
         "{record}: column \"{channel}\" never changes{part}, needed is a measured motion or force"

@@ -4,8 +4,49 @@ use std::collections::BTreeSet;
 
 use simgap_effects::{Effect, Parameter, unit_of_rotation};
 use simgap_model::{GROUND, Location, Model, OutputKind};
-use simgap_record::Record;
+use simgap_record::{Record, Unit, UnitKind};
 use simgap_simulate::{input_unit, output_unit};
+
+use crate::DiagnoseError;
+
+/// Refuses records that hold a channel of the model in different units: numbers that a gain takes as they are, or another quantity.
+///
+/// # Errors
+/// [`DiagnoseError::OtherUnit`].
+pub(crate) fn refuse_other_units(model: &Model, records: &[&Record]) -> Result<(), DiagnoseError> {
+    let inputs = model
+        .inputs
+        .iter()
+        .map(|input| (&input.channel, input.gain));
+    let outputs = model
+        .outputs
+        .iter()
+        .map(|output| (&output.channel, output.gain));
+    for (channel, gain) in inputs.chain(outputs) {
+        let columns = records.iter().filter_map(|record| {
+            let unit = &record.channel(channel)?.unit;
+            let is_stated = !["", "-", "1"].contains(&unit.symbol());
+            is_stated.then_some((record.name(), unit))
+        });
+        let columns: Vec<(&str, &Unit)> = columns.collect();
+        let is_other = |one: &Unit, other: &Unit| {
+            let are_plain = one.kind() == UnitKind::Other && one.symbol() != other.symbol();
+            let as_they_are = gain.is_some() && one.to_si(1.0) != other.to_si(1.0);
+            one.kind() != other.kind() || are_plain || as_they_are
+        };
+        let first = columns.first();
+        let other = first.and_then(|(_, unit)| columns.iter().find(|(_, of)| is_other(unit, of)));
+        if let (Some((known_in, known)), Some((record, found))) = (first, other) {
+            return Err(DiagnoseError::OtherUnit {
+                record: (*record).to_string(),
+                channel: channel.clone(),
+                found: found.symbol().to_string(),
+                known: format!("{} in {known_in}", known.symbol()),
+            });
+        }
+    }
+    Ok(())
+}
 
 /// Units of the places of a model and of the channels of a record, SI.
 pub(crate) struct Units {

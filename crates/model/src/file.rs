@@ -90,7 +90,11 @@ for_elements!(model_file);
 #[derive(Serialize, Deserialize)]
 struct EffectFile {
     kind: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "crate::two::two_or_none"
+    )]
     between: Option<[String; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     mass: Option<String>,

@@ -64,6 +64,7 @@ mod refuse;
 mod sensitivity;
 pub mod serial;
 mod travel;
+mod two;
 mod uncertainty;
 
 pub use between_samples::BetweenSamples;

@@ -88,7 +88,11 @@ pub struct Output {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<String>,
     /// For a force: the nodes between which the members carry it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "crate::two::two_or_none"
+    )]
     pub between: Option<[String; 2]>,
     /// Model unit per unit of the channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -28,6 +28,7 @@ pub struct Spring {
     /// Unique among springs.
     pub name: String,
     /// The two nodes a and b.
+    #[serde(deserialize_with = "crate::two::two")]
     pub between: [String; 2],
     /// k, N/m or N m/rad.
     pub stiffness: f64,
@@ -43,6 +44,7 @@ pub struct Damper {
     /// Unique among dampers.
     pub name: String,
     /// The two nodes a and b.
+    #[serde(deserialize_with = "crate::two::two")]
     pub between: [String; 2],
     /// c, N s/m or N m s/rad.
     pub damping: f64,

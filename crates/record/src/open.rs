@@ -222,8 +222,11 @@ fn second_look(
     }
     let (file, _) = opened(path, label)?;
     let bytes = all_bytes(file, label)?;
+    // The name of the time column says its unit: `time_ms`.
+    let lacks_time = matches!(error, RecordError::NoTimeColumn { .. });
+    let takes_all = options.wanted.is_none() || lacks_time;
     match logger::read_table(label, name, &bytes, options, false) {
-        Ok(reading) if options.wanted.is_none() || reading.has_later_header() => Ok(reading),
+        Ok(reading) if takes_all || reading.has_later_header() => Ok(reading),
         _ => Err(error),
     }
 }

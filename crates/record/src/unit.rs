@@ -95,23 +95,29 @@ pub enum Quantity {
     Pressure,
     /// Volume flow.
     Flow,
-    /// A number of any unit but that of a time: a command, a set point, a share.
+    /// Angle alone: the roll of a body.
+    Angle,
+    /// A share of a whole: what has no unit of a motion, a force, a pressure or a flow.
+    Share,
+    /// A number of any unit but that of a time: a command, a set point.
     Number,
 }
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Quantity; 7] = [
+    pub const ALL: [Quantity; 9] = [
         Quantity::Displacement,
         Quantity::Velocity,
         Quantity::Acceleration,
         Quantity::Force,
         Quantity::Pressure,
         Quantity::Flow,
+        Quantity::Angle,
+        Quantity::Share,
         Quantity::Number,
     ];
 
-    /// The kinds of its units for translation and for rotation; `None` for a number.
+    /// The kinds of its units for translation and for rotation; `None` for a number or a share.
     fn kinds(self) -> Option<[UnitKind; 2]> {
         match self {
             Quantity::Displacement => Some([UnitKind::Length, UnitKind::Angle]),
@@ -120,7 +126,8 @@ impl Quantity {
             Quantity::Force => Some([UnitKind::Force, UnitKind::Torque]),
             Quantity::Pressure => Some([UnitKind::Pressure; 2]),
             Quantity::Flow => Some([UnitKind::Flow; 2]),
-            Quantity::Number => None,
+            Quantity::Angle => Some([UnitKind::Angle; 2]),
+            Quantity::Share | Quantity::Number => None,
         }
     }
 
@@ -129,11 +136,12 @@ impl Quantity {
     pub fn accepts(self, kind: UnitKind) -> bool {
         match self.kinds() {
             Some(kinds) => kinds.contains(&kind),
+            None if self == Quantity::Share => kind == UnitKind::Other,
             None => kind != UnitKind::Time,
         }
     }
 
-    /// The quantity that an SI symbol measures; [`Quantity::Number`] for `1` and what no model measures.
+    /// The first quantity that an SI symbol measures; [`Quantity::Number`] for `1` and what no model measures.
     ///
     /// ```
     /// use simgap_record::Quantity;
@@ -166,6 +174,8 @@ impl Quantity {
             Quantity::Force => "N, kN, lbf or N m",
             Quantity::Pressure => "Pa, bar, MPa or psi",
             Quantity::Flow => "m^3/s, l/s or l/min",
+            Quantity::Angle => "rad or deg",
+            Quantity::Share => "1 or none",
             Quantity::Number => "1, V or m",
         }
     }
@@ -180,6 +190,8 @@ impl fmt::Display for Quantity {
             Quantity::Force => "a force",
             Quantity::Pressure => "a pressure",
             Quantity::Flow => "a flow",
+            Quantity::Angle => "an angle",
+            Quantity::Share => "a share",
             Quantity::Number => "a number",
         })
     }

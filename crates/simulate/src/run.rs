@@ -188,7 +188,11 @@ pub fn input_quantity(kind: InputKind) -> Quantity {
 /// What an output without a gain must measure.
 #[must_use]
 pub fn output_quantity(kind: OutputKind) -> Quantity {
-    Quantity::of_si_symbol(kind.unit())
+    match kind {
+        OutputKind::Roll => Quantity::Angle,
+        OutputKind::Spool => Quantity::Share,
+        kind => Quantity::of_si_symbol(kind.unit()),
+    }
 }
 
 /// Unit of an output in the model: SI, as a length or as an angle according to the record's column;

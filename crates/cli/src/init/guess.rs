@@ -57,7 +57,8 @@ pub(super) fn words(quantity: Quantity) -> &'static str {
         Quantity::Force => "force",
         Quantity::Pressure => "pressure",
         Quantity::Flow => "flow",
-        Quantity::Number => "number",
+        Quantity::Angle => "angle",
+        Quantity::Share | Quantity::Number => "number",
     }
 }
 

@@ -201,7 +201,8 @@ fn gain(text: &mut String, role: &Role) {
         Quantity::Force => "N",
         Quantity::Pressure => "Pa",
         Quantity::Flow => "m^3/s",
-        Quantity::Number => "1",
+        Quantity::Angle => "rad",
+        Quantity::Share | Quantity::Number => "1",
     };
     if role.needs_gain {
         let line = format!("{:COMMENT$}", "gain = 1.0");

@@ -35,6 +35,7 @@ pub struct Beam {
     /// Unique among beams and springs.
     pub name: String,
     /// The two nodes.
+    #[serde(deserialize_with = "crate::two::two")]
     pub between: [String; 2],
     /// L, m.
     pub length: f64,

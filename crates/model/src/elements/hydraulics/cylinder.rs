@@ -35,10 +35,13 @@ pub struct Cylinder {
     /// Unique among cylinders; the pressures are the nodes `name.p1` and `name.p2`.
     pub name: String,
     /// Rod and housing.
+    #[serde(deserialize_with = "crate::two::two")]
     pub between: [String; 2],
     /// A₁ and A₂, m².
+    #[serde(deserialize_with = "crate::two::two")]
     pub areas: [f64; 2],
     /// V₀₁ and V₀₂, m³.
+    #[serde(deserialize_with = "crate::two::two")]
     pub dead_volumes: [f64; 2],
     /// S, m.
     pub stroke: f64,
@@ -54,6 +57,7 @@ pub struct Cylinder {
     #[serde(default)]
     pub external_leakage: f64,
     /// p₀ of the two chambers, Pa.
+    #[serde(deserialize_with = "crate::two::two")]
     #[serde(default)]
     pub pressures: [f64; 2],
 }
