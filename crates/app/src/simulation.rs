@@ -8,7 +8,7 @@ use simgap_model::Model;
 use simgap_simulate::{ExternalPlant, Run, SimulateError, output_unit};
 
 use crate::AppError;
-use crate::input::{Input, idle_masses};
+use crate::input::{Input, conversions, idle_masses};
 
 /// What a model predicts.
 pub struct Simulation {
@@ -54,7 +54,8 @@ pub fn simulate_with(
     let mut problem = Problem::new(model, vec![run.clone()]).map_err(failed)?;
     problem.plant = plant;
     let measured = run.measured.iter().any(Option::is_some);
-    let mut notes = idle_masses(model);
+    let mut notes = conversions(record, model);
+    notes.extend(idle_masses(model));
     notes.extend(read_notes.iter().cloned());
     if !measured && !from_rest && !model.outputs.is_empty() {
         notes.push(format!(

@@ -22,9 +22,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), CliError> {
     let folder = Folder::make(folder, &[], &files)?;
     write_csv_atomic(&args.out, &found.headers, &columns)?;
     folder.keep();
-    let conversions = input::conversions(&record.record, &model).into_iter();
-    let notes = conversions.chain(found.notes.iter().cloned());
-    let notes = notes.map(|note| format!("note: {note}\n"));
+    let notes = found.notes.iter().map(|note| format!("note: {note}\n"));
     say(&format!(
         "{}\n{}",
         args.out.display(),

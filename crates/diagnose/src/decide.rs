@@ -11,7 +11,7 @@ use crate::prepared::Prepared;
 use crate::{DiagnoseError, Status};
 
 /// The status is `unknown` where another cause is likelier than this.
-const LIKELIER_THAN_NOT: f64 = 0.5;
+pub const LIKELIER_THAN_NOT: f64 = 0.5;
 
 /// What the training records say.
 pub(crate) struct Decision {

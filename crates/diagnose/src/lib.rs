@@ -81,6 +81,7 @@ mod spread;
 mod structure;
 mod units;
 
+pub use decide::LIKELIER_THAN_NOT;
 pub use diagnosis::*;
 pub use error::DiagnoseError;
 pub use limit::Limit;

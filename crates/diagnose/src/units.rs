@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use simgap_effects::{Effect, Parameter, unit_of_rotation};
 use simgap_model::{GROUND, Location, Model, OutputKind};
-use simgap_record::{Record, Unit, UnitKind};
+use simgap_record::{Record, Unit};
 use simgap_simulate::{input_unit, output_unit};
 
 use crate::DiagnoseError;
@@ -29,14 +29,14 @@ pub(crate) fn refuse_other_units(model: &Model, records: &[&Record]) -> Result<(
             is_stated.then_some((record.name(), unit))
         });
         let columns: Vec<(&str, &Unit)> = columns.collect();
-        let is_other = |one: &Unit, other: &Unit| {
-            let are_plain = one.kind() == UnitKind::Other && one.symbol() != other.symbol();
-            let as_they_are = gain.is_some() && one.to_si(1.0) != other.to_si(1.0);
-            one.kind() != other.kind() || are_plain || as_they_are
+        let Some(((known_in, known), others)) = columns.split_first() else {
+            continue;
         };
-        let first = columns.first();
-        let other = first.and_then(|(_, unit)| columns.iter().find(|(_, of)| is_other(unit, of)));
-        if let (Some((known_in, known)), Some((record, found))) = (first, other) {
+        let is_known = |unit: &Unit| {
+            let has_factor = gain.is_none() || unit.si_factor() == known.si_factor();
+            known.measures_as(unit) && has_factor
+        };
+        if let Some((record, found)) = others.iter().find(|(_, unit)| !is_known(unit)) {
             return Err(DiagnoseError::OtherUnit {
                 record: (*record).to_string(),
                 channel: channel.clone(),

@@ -1,6 +1,6 @@
 //! Catalogue names, places and verdicts in plain words, shared by the page and the summary.
 
-use simgap_diagnose::{Diagnosis, NamedEffect, Status};
+use simgap_diagnose::{Diagnosis, LIKELIER_THAN_NOT, NamedEffect, Status};
 use simgap_model::Location;
 
 use crate::number::{percent, ratio};
@@ -8,8 +8,6 @@ use crate::unit::{estimate, is_fitted};
 
 /// Below this a named effect is called the likely cause, not the cause.
 pub(crate) const SURE: f64 = 0.9;
-/// Up to this a cause outside the catalogue is not called the likelier one.
-const LIKELIER_THAN_NOT: f64 = 0.5;
 
 /// A catalogue name in words: "Coulomb friction", "wrong stiffness".
 pub(crate) fn kind(kind: &str) -> String {

@@ -281,8 +281,7 @@ fn trace(
     let (measured, simulated) = (request.measured, request.simulated);
     let (one, two) = (measured.require(name)?, simulated.require(other)?);
     let (kind, unit) = (one.unit.kind(), one.unit.symbol());
-    let same = kind == two.unit.kind() && (kind != UnitKind::Other || unit == two.unit.symbol());
-    if !same {
+    if !one.unit.measures_as(&two.unit) {
         return Err(CompareError::Units {
             channel: name.to_string(),
             measured: measured.name().to_string(),
