@@ -1,4 +1,4 @@
-//! The part of long records that is searched in.
+//! The part of long records that is searched in, and a smaller one that is searched in first.
 //!
 //! Where every input and everything that re-estimated parameters leave is smooth from sample to sample, every few samples
 //! say as much as all of them: the whole of each record is searched in, at a lower rate. Elsewhere the stretch of most
@@ -6,20 +6,45 @@
 
 use simgap_simulate::Run;
 
-/// Samples the search may use, and values of all channels in them; more make it slower, not wiser.
+/// Samples the search may use; more make it slower, not wiser.
 const SEARCH_SAMPLES: usize = 12_000;
-const SEARCH_VALUES: usize = 36_000;
+/// The same of the search that comes first where records are longer than that.
+const FIRST_SAMPLES: usize = 3000;
+/// Of more channels than these it is the values of all channels that count.
+const FEW_CHANNELS: usize = 3;
 /// What straight lines between the samples of a lower rate may miss, rms: of an input over its motion, and of what is left.
 const MISSED: [f64; 2] = [0.01, 0.1];
 
 /// The runs to search in, given what re-estimated parameters leave of each channel of each.
 pub(crate) fn excerpts(runs: &[Run], left: &[Vec<Vec<f64>>]) -> Vec<Run> {
-    let total: usize = runs.iter().map(|run| run.len).sum();
-    let channels = runs.iter().map(|run| run.measured.len()).max();
-    let most = SEARCH_SAMPLES.min(SEARCH_VALUES / channels.unwrap_or(1).max(1));
-    if total <= most {
-        return runs.to_vec();
+    match is_long(runs) {
+        true => shortened(runs, left, SEARCH_SAMPLES),
+        false => runs.to_vec(),
     }
+}
+
+/// The runs to search in first, where there are any.
+pub(crate) fn first_excerpts(runs: &[Run], left: &[Vec<Vec<f64>>]) -> Option<Vec<Run>> {
+    is_long(runs).then(|| shortened(runs, left, FIRST_SAMPLES))
+}
+
+fn is_long(runs: &[Run]) -> bool {
+    total(runs) > most(runs, SEARCH_SAMPLES)
+}
+
+fn total(runs: &[Run]) -> usize {
+    runs.iter().map(|run| run.len).sum()
+}
+
+/// Samples that hold no more values than so many samples of few channels.
+fn most(runs: &[Run], samples: usize) -> usize {
+    let channels = runs.iter().map(|run| run.measured.len()).max();
+    samples * FEW_CHANNELS / channels.unwrap_or(1).max(FEW_CHANNELS)
+}
+
+/// Runs of no more than so many samples of few channels.
+fn shortened(runs: &[Run], left: &[Vec<Vec<f64>>], samples: usize) -> Vec<Run> {
+    let (total, most) = (total(runs), most(runs, samples));
     // An odd number of samples: even and odd ones still alternate.
     let stride = total.div_ceil(most) | 1;
     let is_smooth = |run: &Run, left: &Vec<Vec<f64>>| {
@@ -82,6 +107,7 @@ fn most_energetic(run: &Run, len: usize) -> usize {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
@@ -113,5 +139,15 @@ mod tests {
         assert_eq!((rough.len, rough.time_step_s), (12_000, 0.001));
         let short = run(2000, |t| t.sin());
         assert_eq!(found(&short, |t| t).len, 2000);
+    }
+
+    #[test]
+    fn long_records_are_searched_in_fewer_samples_first() {
+        let first =
+            |run: &Run| first_excerpts(std::slice::from_ref(run), &[vec![vec![0.0; run.len]]]);
+        let decay = run(30_000, |t| (-0.1 * t).exp() * (7.0 * t).sin());
+        let part = first(&decay).unwrap().swap_remove(0);
+        assert_eq!((part.len, part.time_step_s), (2728, 0.011));
+        assert!(first(&run(12_000, |t| t.sin())).is_none());
     }
 }

@@ -19,13 +19,13 @@ use simgap_inference::{
 };
 use simgap_model::{BetweenSamples, Model};
 use simgap_record::{Defect, QualityFinding, Record};
-use simgap_simulate::ExternalPlant;
+use simgap_simulate::{ExternalPlant, Run};
 
 use crate::check::Check;
 use crate::data::{Data, divide};
 use crate::decide::{Decision, decide};
 use crate::diagnosis::{CheckSeries, Diagnosis, PlaceMotion, Where};
-use crate::excerpt::excerpts;
+use crate::excerpt::{excerpts, first_excerpts};
 use crate::final_fit::fit_to_all;
 use crate::limit::Limit;
 use crate::locate::Located;
@@ -122,9 +122,12 @@ pub fn diagnose<R: Borrow<Record>>(
     };
     let baseline = fit(&prepared.excerpt, &start, &options)?;
     let noise = NoiseModel::new(&prepared.excerpt, &baseline, &prepared.recalibrated)?;
+    let noise = noise.at_rate_of(&prepared.train, &prepared.excerpt);
     let space = ModelSpace::new(&prepared.excerpt, &baseline, request.withheld)?;
-    prepared.excerpt.scales = space.scales();
-    prepared.train.scales = space.scales();
+    let parts = [&mut prepared.excerpt, &mut prepared.train].into_iter();
+    for problem in parts.chain(&mut prepared.first_excerpt) {
+        problem.scales = space.scales();
+    }
     let effort = prepared.train.effort.clone();
     let limit = request.limit;
     let is_spent = || limit.is_reached(&effort);
@@ -134,12 +137,7 @@ pub fn diagnose<R: Borrow<Record>>(
     };
     let gap = prepared.gap();
     let mut search = Search::new(&prepared.excerpt, &noise, space, &gap, budget);
-    let base = search.fit(&start)?;
-    let pool = search.run(&base)?;
-    // The colour of what the set leaves that leaves least, once and for all sets.
-    progress(Stage::Colour.name());
-    let mut pool = search.recolour(&pool);
-    search.refine(&mut pool)?;
+    let pool = search.find(&start, prepared.first_excerpt.as_ref())?;
     let stopped_early = is_spent();
     // Sets that failed are left out of the pool, those of cancelled work too.
     request.cancel.check()?;
@@ -226,14 +224,23 @@ fn prepare<R: Borrow<Record>>(
         ..options
     };
     let recalibrated = recalibrate(&train, &start, &loose)?;
-    let mut excerpt = match train.may_cut() {
-        true => train.with_runs(excerpts(&train.runs, &recalibrated.discrepancy)),
-        false => train.with_runs(train.runs.clone()),
+    let part = |runs: Vec<Run>| {
+        let mut part = train.with_runs(runs);
+        part.leaves_out_ends = true;
+        part
     };
-    excerpt.leaves_out_ends = true;
+    let left = &recalibrated.discrepancy;
+    let (excerpt, first_excerpt) = match train.may_cut() {
+        true => {
+            let first = first_excerpts(&train.runs, left);
+            (part(excerpts(&train.runs, left)), first.map(part))
+        }
+        false => (part(train.runs.clone()), None),
+    };
     Ok(Prepared {
         train,
         excerpt,
+        first_excerpt,
         nominal,
         recalibrated,
         parameters,

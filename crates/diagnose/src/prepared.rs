@@ -9,6 +9,8 @@ pub(crate) struct Prepared {
     pub(crate) train: Problem,
     /// The part of them that is searched in.
     pub(crate) excerpt: Problem,
+    /// The part of them that is searched in first, where they are long.
+    pub(crate) first_excerpt: Option<Problem>,
     /// The model as given.
     pub(crate) nominal: Fit,
     /// With its nominal parameters re-estimated.

@@ -26,6 +26,7 @@ mod model_space;
 mod motion;
 pub mod noise_model;
 mod other;
+mod part;
 mod proposals;
 mod recolour;
 mod relevance;

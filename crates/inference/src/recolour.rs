@@ -6,7 +6,7 @@
 //! worth the whole way.
 
 use rayon::prelude::*;
-use simgap_estimate::{FitOptions, linearise_at, misfit};
+use simgap_estimate::{FitOptions, Start, linearise_at, misfit};
 
 use crate::candidate_model::{CandidateModel, least, rank};
 use crate::extended::Visited;
@@ -15,6 +15,13 @@ use crate::search::Search;
 
 /// Log odds beyond which a set is no match for the likeliest, whatever a fit of it still gains.
 const REACH: f64 = 20.0;
+
+/// Whether a set is fitted again that is so far behind the likeliest, by a search that has ended or not.
+pub(crate) fn is_fitted_again(set: &CandidateModel, behind: f64, is_spent: bool) -> bool {
+    let is_simple = set.effects().len() == 1 || set.is_of_parameters();
+    let is_base = set.effects().is_empty();
+    is_base || (is_simple && !is_spent) || behind < REACH
+}
 
 impl Search<'_> {
     /// The single effects of a ranked pool, its sets of wrong parameters, and those within reach, fitted again with the colour of what the
@@ -27,12 +34,7 @@ impl Search<'_> {
         };
         let is_new = self.visited.coloured_by.as_ref() != Some(&least.key());
         if is_new {
-            self.noise = self.noise.with_colour_of(&least.fit);
-            self.options = self.noise.search_options();
-            self.visited = Visited {
-                coloured_by: Some(least.key()),
-                ..Visited::default()
-            };
+            self.take_colour_of(least);
         }
         let expected = |set: &CandidateModel| {
             let misfit = misfit(self.problem, &set.fit.variance, &self.options);
@@ -42,15 +44,14 @@ impl Search<'_> {
         let best = expected.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let is_spent = self.is_spent();
         let is_again = |(set, expected): &(&CandidateModel, f64)| {
-            let is_simple = set.effects().len() == 1 || set.is_of_parameters();
-            let is_base = set.effects().is_empty();
-            is_base || (is_simple && !is_spent) || *expected > best - REACH
+            is_fitted_again(set, best - expected, is_spent)
         };
         let again = pool.iter().zip(expected).filter(is_again);
         let (again, stay): (Vec<&CandidateModel>, Vec<&CandidateModel>) = again
             .map(|(set, _)| set)
             .partition(|set| is_new || !set.fit.is_finished);
-        let mut sets = self.fit_again(&again);
+        let starts: Vec<Start> = again.iter().map(|set| set.fit.estimate.clone()).collect();
+        let mut sets = self.fit_again(&starts);
         sets.extend(stay.into_iter().cloned());
         rank(&mut sets);
         let best = sets.first().map_or(0.0, CandidateModel::log_posterior);
@@ -65,28 +66,38 @@ impl Search<'_> {
         fitted
     }
 
-    /// Sets, fitted again from where they are; those of which no fit succeeds are left out.
-    fn fit_again(&self, sets: &[&CandidateModel]) -> Vec<CandidateModel> {
-        let empty = sets.iter().find(|set| set.effects().is_empty());
-        let base = empty.and_then(|empty| self.fit(&empty.fit.estimate).ok());
+    /// Counts samples by the colour of what a set leaves, from here on.
+    pub(crate) fn take_colour_of(&mut self, set: &CandidateModel) {
+        self.noise = self.noise.with_colour_of(&set.fit);
+        self.options = self.noise.search_options();
+        self.visited = Visited {
+            coloured_by: Some(set.key()),
+            ..Visited::default()
+        };
+    }
+
+    /// Sets fitted from where they were found; those of which no fit succeeds are left out.
+    pub(crate) fn fit_again(&self, starts: &[Start]) -> Vec<CandidateModel> {
+        let empty = starts.iter().find(|start| start.effects.is_empty());
+        let base = empty.and_then(|empty| self.fit(empty).ok());
         let linear = base
             .as_ref()
             .and_then(|base| linearise_at(self.problem, &base.fit, &self.options).ok());
         let Some(linear) = linear else {
-            let each = sets.par_iter();
-            return each
-                .filter_map(|set| self.fit(&set.fit.estimate).ok())
-                .collect();
+            let each = starts.par_iter();
+            return each.filter_map(|start| self.fit(start).ok()).collect();
         };
-        let fit = |set: &CandidateModel, most_steps: usize| {
+        let fit = |start: &Start, most_steps: usize| {
             let options = FitOptions {
                 most_steps,
                 ..self.options.clone()
             };
-            let fit = linear.fit(&set.fit.estimate, &options).ok()?;
+            let fit = linear.fit(start, &options).ok()?;
             Some(self.candidate_model(fit))
         };
-        let rough = sets.par_iter().filter_map(|set| fit(set, ROUGH_STEPS));
+        let rough = starts
+            .par_iter()
+            .filter_map(|start| fit(start, ROUGH_STEPS));
         let mut rough: Vec<CandidateModel> = rough.collect();
         rank(&mut rough);
         let best = rough.first().map_or(0.0, CandidateModel::log_posterior);
@@ -95,7 +106,7 @@ impl Search<'_> {
         let finish = |(place, set): (usize, CandidateModel)| {
             let is_promising = place < most || set.log_posterior() > best - REACH;
             match is_promising && !set.fit.is_finished {
-                true => fit(&set, self.options.most_steps).unwrap_or(set),
+                true => fit(&set.fit.estimate, self.options.most_steps).unwrap_or(set),
                 false => set,
             }
         };

@@ -21,6 +21,8 @@ pub enum Stage {
     Threes,
     /// Stretches of the records, each with a start of its own.
     Stretches,
+    /// What was found in a part of the samples, fitted to all of them.
+    AllSamples,
     /// Sets fitted again, with samples that count by the colour of what is left.
     Colour,
     /// Changes to the best set, in several rounds.
@@ -35,7 +37,7 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in order.
-    pub const ALL: [Stage; 14] = [
+    pub const ALL: [Stage; 15] = [
         Stage::NominalModel,
         Stage::NominalParameters,
         Stage::Singles,
@@ -45,6 +47,7 @@ impl Stage {
         Stage::PairsFromManyValues,
         Stage::Threes,
         Stage::Stretches,
+        Stage::AllSamples,
         Stage::Colour,
         Stage::Changes,
         Stage::Posterior,
@@ -65,6 +68,7 @@ impl Stage {
             Stage::PairsFromManyValues => "pairs from many values",
             Stage::Threes => "sets of three",
             Stage::Stretches => "single effects in stretches",
+            Stage::AllSamples => "fits to all samples",
             Stage::Colour => "fits under the colour of what is left",
             Stage::Changes => "changes to the best set",
             Stage::Posterior => "posterior",

@@ -86,6 +86,18 @@ impl NoiseModel {
         })
     }
 
+    /// The same where the records of one problem are those of the other at another rate: as many independent samples among more or fewer.
+    #[must_use]
+    pub fn at_rate_of(&self, from: &Problem, to: &Problem) -> NoiseModel {
+        let step_s = |problem: &Problem| problem.runs.first().map_or(1.0, |run| run.time_step_s);
+        let steps = step_s(to) / step_s(from);
+        let shares = self.effective_share.iter();
+        NoiseModel {
+            effective_share: shares.map(|share| (steps * share).min(1.0)).collect(),
+            ..self.clone()
+        }
+    }
+
     /// The same with the colour of what another fit leaves.
     #[must_use]
     pub fn with_colour_of(&self, residual: &Fit) -> NoiseModel {
