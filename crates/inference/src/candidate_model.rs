@@ -176,6 +176,11 @@ pub(crate) fn is_bent(set: &CandidateModel) -> bool {
     set.nominal_deviation() > BENT
 }
 
+/// Whether a set takes the nominal parameters so much further than another.
+pub(crate) fn is_bent_from(set: &CandidateModel, other: &CandidateModel) -> bool {
+    set.nominal_deviation() > other.nominal_deviation() + BENT
+}
+
 /// Nominal parameters to look for effects from: those of a set, or as given where a large gap has bent them. Beside the
 /// true law they are near those, and bent ones may lie beyond a ridge.
 pub(crate) fn straight(set: &CandidateModel) -> Vec<Placed> {

@@ -8,7 +8,7 @@
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
 use crate::candidate_model::{
-    CandidateModel, INDISTINGUISHABLE, is_bent, is_nominal, name, remove,
+    CandidateModel, INDISTINGUISHABLE, is_bent, is_bent_from, is_nominal, name, remove,
 };
 use crate::gap::RELEVANT_SHARE;
 use crate::motion;
@@ -43,7 +43,7 @@ impl Search<'_> {
             return false;
         }
         // Nominal parameters that are bent to stand for the effect do what it does.
-        if is_bent(without) && !is_bent(with) {
+        if is_bent_from(without, with) {
             return true;
         }
         // What comes late in one channel may show in another: where records begin follows the late one.
