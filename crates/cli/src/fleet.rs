@@ -40,8 +40,10 @@ pub(crate) fn run_fleet(args: &FleetArgs) -> Result<(), CliError> {
                 .iter()
                 .map(|finding| format!("- {}\n", finding.text));
             let told: String = told.collect();
+            let notes = fleet.notes.iter().map(|note| format!("note: {note}\n"));
+            let notes: String = notes.collect();
             say(&format!(
-                "{}{told}report: {}\n",
+                "{}{notes}{told}report: {}\n",
                 done(counts),
                 report.display()
             ))

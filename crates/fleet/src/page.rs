@@ -32,6 +32,8 @@ table.heat td{font-variant-numeric:tabular-nums;border:1px solid var(--paper)}
 pub(crate) struct PageInput<'a> {
     /// Name of the fleet.
     pub name: &'a str,
+    /// What the plan says that no record answers to.
+    pub notes: &'a [String],
     /// All diagnoses.
     pub observations: &'a [Observation],
     /// Units of the plan, answered or not.
@@ -79,6 +81,9 @@ fn head(html: &mut Html, input: &PageInput<'_>) {
             last.unwrap_or_default()
         ));
     });
+    for note in input.notes {
+        html.element("p", &[("class", "meta")], &format!("Note: {note}."));
+    }
     let count = input.told.findings.len();
     let plural = if count == 1 { "" } else { "s" };
     html.element(

@@ -14,7 +14,7 @@ use crate::page::{PageInput, page};
 use crate::plan::Plan;
 use crate::prior::{FleetModel, NominalOfFleet, fleet_models};
 use crate::table::Table;
-use crate::unit::Unit;
+use crate::unit::{Unit, without_records};
 
 /// What a report tells, as `fleet.json` holds it.
 #[derive(Debug, Clone, Serialize)]
@@ -29,6 +29,8 @@ pub struct Fleet {
     pub answered: usize,
     /// Of these, diagnoses that failed.
     pub failed: usize,
+    /// What the plan says that no record answers to.
+    pub notes: Vec<String>,
     /// What the fleet says.
     pub findings: Vec<Finding>,
     /// The distribution of nominal values, by model file.
@@ -62,8 +64,10 @@ pub fn report(plan: &Plan, units: &[Unit], out: &Path) -> Result<Fleet, FleetErr
     let observations = observations(units, &Table::of(out))?;
     let told = told(&observations, &plan.conditions);
     let models = fleet_models(&observations, &told.series, &told.findings)?;
+    let notes = without_records(plan, units);
     let html = page(&PageInput {
         name: &plan.name,
+        notes: &notes,
         observations: &observations,
         units: units.len(),
         told: &told,
@@ -85,6 +89,7 @@ pub fn report(plan: &Plan, units: &[Unit], out: &Path) -> Result<Fleet, FleetErr
         answered: observations.len(),
         failed: observations.iter().filter(|o| o.failed.is_some()).count(),
         models: values.collect(),
+        notes,
         findings: told.findings,
     };
     let json = fleet.json()?;

@@ -64,6 +64,14 @@ impl Unit {
     }
 }
 
+/// What a plan says of machines that no unit is of: a name that no record has, perhaps by a slip.
+pub(crate) fn without_records(plan: &Plan, units: &[Unit]) -> Vec<String> {
+    let is_idle = |name: &&String| units.iter().all(|unit| unit.machine != **name);
+    let idle = plan.machines.keys().filter(is_idle);
+    let told = idle.map(|name| format!("there is no record of [[machine]] \"{name}\" of the plan"));
+    told.collect()
+}
+
 /// The units of a plan, sorted by their files in the table: records of the same machine, date and conditions are one unit.
 ///
 /// `listed` are the paths of records in places that only other programs reach (a bucket, say), for the patterns of such

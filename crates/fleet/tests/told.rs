@@ -109,8 +109,13 @@ impl Made {
     }
 
     fn told(&self) -> Fleet {
+        self.told_with("")
+    }
+
+    fn told_with(&self, machines: &str) -> Fleet {
         let text = "schema = \"simgap-plan/1\"\nname = \"made\"\nrecords = [\"{machine}/{date}/{rig}.csv\"]\nmodel = \"table.toml\"\n";
-        let plan = Plan::parse(text, &self.folder.path().join("plan.toml")).unwrap();
+        let text = format!("{text}{machines}");
+        let plan = Plan::parse(&text, &self.folder.path().join("plan.toml")).unwrap();
         report(&plan, &self.units, self.folder.path()).unwrap()
     }
 
@@ -377,5 +382,21 @@ fn verify_rows_come_back_as_they_were_written() {
     assert!(
         table.rows(&nowhere).unwrap().is_empty()
             && Path::new(&table.path(&nowhere)).ends_with("none.parquet")
+    );
+}
+
+#[test]
+fn verify_a_machine_of_the_plan_without_records_is_told() {
+    let mut made = Made::new();
+    made.add(1, "2026-03-01", "a", &[stiffness(1.0)]);
+    let known = "[[machine]]\nname = \"m01\"\nbearing = \"old\"\n";
+    assert!(made.told_with(known).notes.is_empty());
+    let slip = "[[machine]]\nname = \"m1\"\nbearing = \"old\"\n";
+    let note = "there is no record of [[machine]] \"m1\" of the plan";
+    assert_eq!(made.told_with(slip).notes, [note]);
+    let page = made.text("fleet.html");
+    assert!(
+        page.contains("Note: there is no record of [[machine]]"),
+        "{page}"
     );
 }

@@ -89,6 +89,11 @@ class Fleet:
         """Of these, diagnoses that failed; their rows hold the reason."""
         return self._values["failed"]
 
+    @property
+    def notes(self) -> list[str]:
+        """What the plan says that no record answers to."""
+        return list(self._values["notes"])
+
     def to_dict(self) -> dict[str, Any]:
         """Everything, as ``fleet.json`` holds it."""
         return json.loads(json.dumps(self._values))
