@@ -84,13 +84,11 @@ fn head(html: &mut Html, input: &PageInput<'_>) {
     for note in input.notes {
         html.element("p", &[("class", "meta")], &format!("Note: {note}."));
     }
-    let count = input.told.findings.len();
-    let plural = if count == 1 { "" } else { "s" };
-    html.element(
-        "h1",
-        &[],
-        &format!("{} machines: {count} finding{plural}", machines.len()),
-    );
+    let count =
+        |count: usize, of: &str| format!("{count} {of}{}", if count == 1 { "" } else { "s" });
+    let machine_count = count(machines.len(), "machine");
+    let finding_count = count(input.told.findings.len(), "finding");
+    html.element("h1", &[], &format!("{machine_count}: {finding_count}"));
     // The figure of a tile is not broken: on a phone it has room for five digits.
     let tiles = [
         ("Machines".to_owned(), machines.len()),
