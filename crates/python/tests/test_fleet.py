@@ -98,7 +98,7 @@ def test_an_executor_gives_the_bytes_of_the_command(fleet, by_command, tmp_path)
             fleet / "plan.toml", tmp_path, client=client, progress=steps.append
         )
     assert contents(tmp_path) == by_command
-    assert (found.answered, found.failed, len(steps)) == (6, 1, 6)
+    assert (found.answered, found.failed, len(steps), found.notes) == (6, 1, 6, [])
     table = found.to_pandas()
     soft = table[(table.role == "named") & (table.machine == "m1")]
     assert set(soft.kind) == {"stiffness_error"}
