@@ -6,7 +6,6 @@
 use simgap_estimate::{EstimateError, FitOptions, Problem, Start, fit_initial_states};
 
 use crate::candidate_model::{CandidateModel, least, rank};
-use crate::extended::Visited;
 use crate::recolour::is_fitted_again;
 use crate::search::Search;
 use crate::stage::Stage;
@@ -24,16 +23,15 @@ impl Search<'_> {
         part: Option<&Problem>,
     ) -> Result<Vec<CandidateModel>, EstimateError> {
         let base = self.fit(start)?;
-        let is_settled = self.is_settled(std::slice::from_ref(&base), 0)?;
-        let pool = match part.filter(|_| !is_settled) {
-            Some(part) => {
+        let pool = match part {
+            Some(part) if !self.is_settled(std::slice::from_ref(&base), 0)? => {
                 let found = self.find_in(part, start)?;
-                (self.budget.progress)(Stage::AllSamples.name());
+                self.tell(Stage::AllSamples);
                 self.take_over(&base, part, &found)
             }
-            None => self.run(&base)?,
+            _ => self.run(&base)?,
         };
-        (self.budget.progress)(Stage::Colour.name());
+        self.tell(Stage::Colour);
         let mut pool = self.recolour(&pool);
         self.refine(&mut pool)?;
         Ok(pool)
@@ -43,14 +41,8 @@ impl Search<'_> {
     fn find_in(&self, part: &Problem, start: &Start) -> Result<Vec<CandidateModel>, EstimateError> {
         let noise = self.noise.at_rate_of(self.problem, part);
         let mut search = Search {
-            problem: part,
-            options: noise.search_options(),
-            noise,
-            space: self.space.clone(),
-            gap: self.gap.clone(),
             nominal: self.nominal,
-            budget: self.budget,
-            visited: Visited::default(),
+            ..Search::new(part, &noise, self.space.clone(), &self.gap, self.budget)
         };
         let plain = FitOptions::white(part.model.outputs.len());
         let begun = Start {

@@ -145,7 +145,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn tell(&self, stage: Stage) {
+    pub(crate) fn tell(&self, stage: Stage) {
         (self.budget.progress)(stage.name());
     }
 

@@ -1,11 +1,12 @@
 //! Initial states of sets in which motions part.
-#![allow(clippy::unwrap_used)]
 
 use simgap_effects::{Placed, find};
 use simgap_estimate::{FitOptions, Problem, Start, fit};
-use simgap_inference::{Budget, ModelSpace, NoiseModel, Search};
+use simgap_inference::{ModelSpace, NoiseModel, Search};
 use simgap_model::{Location, Model};
-use simgap_simulate::{Mended, Run, Simulator};
+use simgap_simulate::Run;
+
+use crate::common::{record, without_end};
 
 /// A body on a moved base, of which the acceleration alone is measured: where it begins is seen by its motion.
 const ISOLATOR: &str = r#"
@@ -41,28 +42,18 @@ fn play(gap_m: f64) -> Placed {
 }
 
 /// A sweep of the base, with a body at rest in the middle of its play.
-fn record(model: &Model) -> Run {
+fn sweep(model: &Model) -> Run {
     let base = |n: usize| {
         let t = 0.01 * n as f64;
         0.012 * (std::f64::consts::TAU * (0.5 * t + 0.15 * t * t)).sin()
     };
-    let mut run = Run {
-        name: "sweep".into(),
-        start_s: 0.0,
-        time_step_s: 0.01,
-        len: LEN,
-        first_index: 0,
-        inputs: vec![(0..LEN).map(base).collect()],
-        measured: vec![None],
-        mended: Mended::default(),
-    };
-    let simulator = Simulator::new(model, &[play(PLAY_M)], 4).unwrap();
-    let shown = simulator.predict(&run, &[0.0, 0.0]).unwrap();
-    // A sequence that no model of the catalogue makes, in the place of noise.
-    let noise = (0..LEN as i64).map(|n| 2e-4 * ((n * n * 7919 % 1009) as f64 / 504.5 - 1.0));
-    let seen = shown[0].iter().zip(noise).map(|(a, e)| a + e).collect();
-    run.measured = vec![Some(seen)];
-    run
+    record(
+        model,
+        play(PLAY_M),
+        0.01,
+        (0..LEN).map(base).collect(),
+        2e-4,
+    )
 }
 
 /// With play, a fit of its width and of how the record begins ends where the body began on the wrong side of it: where the play is
@@ -70,7 +61,7 @@ fn record(model: &Model) -> Run {
 #[test]
 fn verify_a_body_at_rest_in_its_play_is_found_from_afar() {
     let model = Model::from_toml(ISOLATOR).unwrap();
-    let problem = Problem::new(&model, vec![record(&model)]).unwrap();
+    let problem = Problem::new(&model, vec![sweep(&model)]).unwrap();
     let nothing = Start {
         effects: vec![],
         nominal: vec![],
@@ -79,10 +70,6 @@ fn verify_a_body_at_rest_in_its_play_is_found_from_afar() {
     let baseline = fit(&problem, &nothing, &FitOptions::white(1)).unwrap();
     let noise = NoiseModel::new(&problem, &baseline, &baseline).unwrap();
     let space = ModelSpace::new(&problem, &baseline, &[]).unwrap();
-    let budget = Budget {
-        progress: &|_| {},
-        is_spent: &|| false,
-    };
     let mut astray = 0;
     for state in [[0.02, 0.0], [-0.02, 0.0], [0.0, 0.2], [0.0, -0.2]] {
         let mut search = Search::new(
@@ -90,7 +77,7 @@ fn verify_a_body_at_rest_in_its_play_is_found_from_afar() {
             &noise,
             space.clone(),
             &problem.output_std(),
-            budget,
+            without_end(),
         );
         let start = Start {
             effects: vec![play(1.4 * PLAY_M)],

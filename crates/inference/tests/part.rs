@@ -1,11 +1,12 @@
 //! Long records: what a search in a part of them finds, fitted to all.
-#![allow(clippy::unwrap_used)]
 
 use simgap_effects::{Placed, find};
 use simgap_estimate::{FitOptions, Problem, Start, fit};
-use simgap_inference::{Budget, CandidateModel, ModelSpace, NoiseModel, Search};
+use simgap_inference::{CandidateModel, ModelSpace, NoiseModel, Search};
 use simgap_model::{Location, Model};
-use simgap_simulate::{Mended, Run, Simulator};
+use simgap_simulate::Run;
+
+use crate::common::{record, without_end};
 
 const AXIS: &str = r#"
 schema = "simgap-model/1"
@@ -34,31 +35,16 @@ at = "slide"
 const LEN: usize = 6000;
 const CUBIC: f64 = 4.0e6;
 
-/// A slide on a hardening spring, moved by two tones; with a sequence that no model of the catalogue makes in the place of noise.
-fn record(model: &Model) -> Run {
+/// A slide on a hardening spring, moved by two tones.
+fn tones(model: &Model) -> Run {
     let force = |n: usize| {
         let t = 0.002 * n as f64;
         20.0 * (std::f64::consts::TAU * 0.9 * t).sin()
             + 15.0 * (std::f64::consts::TAU * 2.3 * t).sin()
     };
-    let mut run = Run {
-        name: "tones".into(),
-        start_s: 0.0,
-        time_step_s: 0.002,
-        len: LEN,
-        first_index: 0,
-        inputs: vec![(0..LEN).map(force).collect()],
-        measured: vec![None],
-        mended: Mended::default(),
-    };
     let at = Location::Between(["slide".into(), "ground".into()]);
     let spring = Placed::new(find("cubic_stiffness").unwrap(), at, vec![CUBIC]);
-    let simulator = Simulator::new(model, &[spring], 4).unwrap();
-    let shown = simulator.predict(&run, &[0.0, 0.0]).unwrap();
-    let noise = (0..LEN as i64).map(|n| 2e-5 * ((n * n * 7919 % 1009) as f64 / 504.5 - 1.0));
-    let seen = shown[0].iter().zip(noise).map(|(a, e)| a + e).collect();
-    run.measured = vec![Some(seen)];
-    run
+    record(model, spring, 0.002, (0..LEN).map(force).collect(), 2e-5)
 }
 
 /// The best set, and what finding it cost.
@@ -71,12 +57,9 @@ fn found(problem: &Problem, part: Option<&Problem>) -> (CandidateModel, u64) {
     let baseline = fit(problem, &start, &FitOptions::white(1)).unwrap();
     let noise = NoiseModel::new(problem, &baseline, &baseline).unwrap();
     let space = ModelSpace::new(problem, &baseline, &[]).unwrap();
-    let budget = Budget {
-        progress: &|_| {},
-        is_spent: &|| false,
-    };
     let before = problem.effort.spent();
-    let mut search = Search::new(problem, &noise, space, &problem.output_std(), budget);
+    let std = problem.output_std();
+    let mut search = Search::new(problem, &noise, space, &std, without_end());
     let pool = search.find(&start, part).unwrap();
     (pool[0].clone(), problem.effort.spent() - before)
 }
@@ -85,7 +68,7 @@ fn found(problem: &Problem, part: Option<&Problem>) -> (CandidateModel, u64) {
 #[test]
 fn verify_what_a_part_proposes_is_what_all_samples_say() {
     let model = Model::from_toml(AXIS).unwrap();
-    let run = record(&model);
+    let run = tones(&model);
     let problem = Problem::new(&model, vec![run.clone()]).unwrap();
     let (whole, cost) = found(&problem, None);
     assert_eq!(whole.key(), ["cubic_stiffness between slide and ground"]);
