@@ -23,6 +23,13 @@ const WINDING: usize = 4;
 /// Sets that are finished of more: those of the best starts, and those of the others that are the best once they are fitted roughly.
 pub(crate) const FINISHED: [usize; 2] = [4, 8];
 
+/// What a set leaves at a place.
+struct Left {
+    lines_hz: [f64; LINES],
+    carriers_hz: [f64; LINES],
+    late_s: f64,
+}
+
 impl Search<'_> {
     /// Every set worth a fit with one more effect than `base`, best first; none where it has been asked before.
     pub(crate) fn extend(
@@ -132,32 +139,34 @@ impl Search<'_> {
 
     /// Scores of all candidates that are not in the set yet, shapes included, best first.
     fn scores(&self, base: &CandidateModel, linear: &Base<'_>) -> Vec<Score> {
-        // Lines that the set leaves, and by how much signals come late: where clocks, hidden modes and long delays start.
-        let mut left: Vec<(Location, [f64; LINES], f64)> = vec![];
+        // Lines and carriers that the set leaves, and by how much signals come late: where clocks, hidden modes and long delays start.
+        let mut left: Vec<(Location, Left)> = vec![];
         for (candidate, _) in &self.space.candidates {
-            if left.iter().all(|(at, ..)| *at != candidate.at) {
-                let lines_hz = self.problem.lines_left(&base.fit, &candidate.at);
+            let at = &candidate.at;
+            if left.iter().all(|(known, _)| known != at) {
                 // Of all channels together: the same at every input.
                 let is_input = |at: &Location| matches!(at, Location::Input(_));
-                let known = left
-                    .iter()
-                    .find(|(at, ..)| is_input(at) && is_input(&candidate.at));
+                let known = left.iter().find(|(of, _)| is_input(of) && is_input(at));
                 let late_s = known.map_or_else(
-                    || self.problem.late(&base.fit, &candidate.at),
-                    |(_, _, late_s)| *late_s,
+                    || self.problem.late(&base.fit, at),
+                    |(_, left)| left.late_s,
                 );
-                left.push((candidate.at.clone(), lines_hz, late_s));
+                let left_at = Left {
+                    lines_hz: self.problem.lines_left(&base.fit, at),
+                    carriers_hz: self.problem.carriers_left(&base.fit, at),
+                    late_s,
+                };
+                left.push((at.clone(), left_at));
             }
         }
         let sized = |candidate: &Candidate, scale: &SiteScale| {
-            let left = left.iter().find(|(at, ..)| *at == candidate.at);
-            let (lines_hz, late_s) =
-                left.map_or((scale.lines_hz, scale.late_s), |(_, hz, s)| (*hz, *s));
-            SiteScale {
-                lines_hz,
-                late_s,
+            let left = left.iter().find(|(at, _)| *at == candidate.at);
+            left.map_or(*scale, |(_, left)| SiteScale {
+                lines_hz: left.lines_hz,
+                carriers_hz: left.carriers_hz,
+                late_s: left.late_s,
                 ..*scale
-            }
+            })
         };
         let scored = self
             .space
