@@ -126,7 +126,7 @@ pub fn diagnose<R: Borrow<Record>>(
     let space = ModelSpace::new(&prepared.excerpt, &baseline, request.withheld)?;
     let parts = [&mut prepared.excerpt, &mut prepared.train].into_iter();
     for problem in parts.chain(&mut prepared.first_excerpt) {
-        problem.scales = space.scales();
+        space.put_priors(problem);
     }
     let effort = prepared.train.effort.clone();
     let limit = request.limit;

@@ -7,6 +7,7 @@ use simgap_simulate::Simulator;
 
 use crate::drift;
 use crate::fit::fit_with;
+use crate::scattered::{is_astray, scattered};
 use crate::{EstimateError, Fit, FitOptions, Problem, Start};
 
 /// Fits what a record has of its own, with everything else as given: the initial state, and of
@@ -37,18 +38,27 @@ pub fn fit_initial_states(
         if !may_part(&fixed.given) || fixed.state_len() == 0 {
             return Ok(best);
         }
-        let others = [
-            released(&fixed, &initial, weights),
-            Some(led(&fixed, initial, weights)),
-        ];
-        for start in others.into_iter().flatten() {
-            // A part that cannot be simulated leads nowhere.
+        // A part that cannot be simulated leads nowhere.
+        let better = |start: Result<Vec<Vec<f64>>, EstimateError>, best: Fit| {
             let found = start.and_then(|start| states_from(&fixed, start, weights));
             let enough = best.objective - weights.converged;
-            best = found
-                .ok()
-                .filter(|found| found.objective < enough)
-                .unwrap_or(best);
+            let found = found.ok().filter(|found| found.objective < enough);
+            found.unwrap_or(best)
+        };
+        if let Some(start) = released(&fixed, &initial, weights) {
+            best = better(start, best);
+        }
+        best = better(led(&fixed, initial.clone(), weights), best);
+        for (run, state) in initial.iter().enumerate() {
+            if is_astray(&fixed, &best.discrepancy[run]) {
+                let mut states = best.estimate.initial.clone();
+                states[run] = beside(
+                    &fixed.with_runs(vec![fixed.runs[run].clone()]),
+                    state,
+                    weights,
+                );
+                best = better(Ok(states), best);
+            }
         }
         return Ok(best);
     }
@@ -115,6 +125,14 @@ fn best_fit(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
             best
         }
     })
+}
+
+/// The initial state of the only run that is best fitted from the best of many beside a measured one.
+fn beside(alone: &Problem, state: &[f64], weights: &FitOptions) -> Vec<f64> {
+    let states = scattered(alone, state).unwrap_or_default().into_iter();
+    let fits = states.filter_map(|state| states_from(alone, vec![state], weights).ok());
+    let found = best_fit(fits).and_then(|fit| fit.estimate.initial.into_iter().next());
+    found.unwrap_or_else(|| state.to_vec())
 }
 
 /// Whether motions that begin alike may part: then the objective of an initial state has many valleys.

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use simgap_effects::{Parameter, Placed, Prior};
 use simgap_simulate::Run;
 
-use crate::problem::{Problem, state_scale};
+use crate::problem::Problem;
+use crate::states::state_scale;
 
 /// Where a fit starts.
 #[derive(Clone)]
@@ -135,10 +136,11 @@ impl Layout {
         }
         layout.phases = layout.phases_of_clocks();
         let first_order = problem.model.first_order();
+        let state_std = |i: usize| problem.state_std.get(i).copied().unwrap_or(f64::INFINITY);
         for run in 0..layout.middle_s.len() {
             for (own, (e, i)) in layout.own_values.clone().into_iter().enumerate() {
                 if layout.phases.iter().any(|(phase, _)| *phase == own) {
-                    layout.push(1.0, [f64::NEG_INFINITY, f64::INFINITY]);
+                    layout.push(1.0, f64::INFINITY, [f64::NEG_INFINITY, f64::INFINITY]);
                     continue;
                 }
                 let value = start.effects[e].in_record(run).values[i];
@@ -147,7 +149,7 @@ impl Layout {
                 layout.set_prior(problem.prior(&start.effects[e], i), parameter);
             }
             for (i, &scale) in state_scale.iter().enumerate() {
-                layout.push(scale, [f64::NEG_INFINITY, f64::INFINITY]);
+                layout.push(scale, state_std(i), [f64::NEG_INFINITY, f64::INFINITY]);
                 // The integral of a pressure enters no equation.
                 if first_order.get(i) == Some(&true) {
                     layout.hold_last(0.0);
@@ -176,9 +178,9 @@ impl Layout {
         })
     }
 
-    fn push(&mut self, scale: f64, [lower, upper]: [f64; 2]) {
+    fn push(&mut self, scale: f64, prior_std: f64, [lower, upper]: [f64; 2]) {
         self.scale.push(scale);
-        self.prior_std.push(f64::INFINITY);
+        self.prior_std.push(prior_std);
         self.prior_mean.push(0.0);
         self.lower.push(lower);
         self.upper.push(upper);
@@ -243,10 +245,11 @@ impl Layout {
             } else {
                 1.0
             },
+            std,
             [parameter.lower.max(least), parameter.upper.min(most)],
         );
-        if let (Some(last), Some(mean)) = (self.prior_std.last_mut(), self.prior_mean.last_mut()) {
-            (*last, *mean) = (std, neutral);
+        if let Some(mean) = self.prior_mean.last_mut() {
+            *mean = neutral;
         }
         if let (Some(size), Some(limit)) = (self.is_size.last_mut(), self.is_limit.last_mut()) {
             *size = parameter.neutral.is_some_and(f64::is_finite) && !parameter.per_record;

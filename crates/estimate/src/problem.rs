@@ -5,7 +5,7 @@ use std::sync::Arc;
 use simgap_effects::{
     Action, Effect, Family, Placed, Prior, Sampled, SiteScale, catalogue_of, own_laws, places_of,
 };
-use simgap_model::{DEFAULT_UNCERTAINTY, Form, Location, Model, Node, OutputKind};
+use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model};
 use simgap_simulate::{ExternalPlant, Job, Run, Simulator, predict_all, substeps_for};
 
 use crate::candidate::Candidate;
@@ -25,6 +25,9 @@ pub struct Problem {
     pub whitening: Whitening,
     /// Typical sizes at places: effects there are fitted under the priors that follow from them, elsewhere without any.
     pub scales: Vec<(Location, SiteScale)>,
+    /// Standard deviation of the prior on each entry of an initial state, about zero ([`Problem::state_std_of`]); no prior
+    /// where there is none.
+    pub state_std: Vec<f64>,
     /// Whether the samples at either end of a run that a late or early channel may leave out
     /// ([`simgap_effects::most_beyond`]) count for no set, so that sets are compared on the same samples; not so at first.
     pub leaves_out_ends: bool,
@@ -98,6 +101,7 @@ impl Problem {
             substeps,
             whitening: Whitening::default(),
             scales: vec![],
+            state_std: vec![],
             leaves_out_ends: false,
             plant: None,
             cancel: Cancel::default(),
@@ -117,6 +121,7 @@ impl Problem {
             substeps: self.substeps,
             whitening: self.whitening.clone(),
             scales: self.scales.clone(),
+            state_std: self.state_std.clone(),
             leaves_out_ends: false,
             plant: self.plant.clone(),
             cancel: self.cancel.clone(),
@@ -334,42 +339,9 @@ impl Problem {
         runs.filter_map(move |run| run.measured[channel].as_deref())
     }
 
-    /// First guess of the initial state of each run, from the measured displacements and
-    /// velocities of the masses where there are any, zero elsewhere.
-    #[must_use]
-    pub fn initial_guess(&self) -> Vec<Vec<f64>> {
-        let n = self.model.dof_count();
-        self.runs
-            .iter()
-            .map(|run| {
-                let mut state = vec![0.0; 2 * n];
-                for (output, measured) in self.model.outputs.iter().zip(&run.measured) {
-                    let (Ok(reading), Some(values)) = (self.model.reading(output), measured) else {
-                        continue;
-                    };
-                    let [Node::Dof(i), Node::Ground] = reading.nodes else {
-                        continue;
-                    };
-                    let first = values.first().copied().unwrap_or(0.0);
-                    let first = first / self.gain_of(&output.channel);
-                    match reading.form {
-                        Form::Displacement => state[i] = first,
-                        Form::Velocity => state[n + i] = first,
-                        Form::Rate { scale, offset } => state[n + i] = (first - offset) / scale,
-                        Form::Acceleration
-                        | Form::Members { .. }
-                        | Form::Orifice { .. }
-                        | Form::Signal => {}
-                    }
-                }
-                state
-            })
-            .collect()
-    }
-
     /// By how much the effects of the model file and those held beside them multiply a constant signal of a channel; what takes from
     /// samples what they held has no gain.
-    fn gain_of(&self, channel: &str) -> f64 {
+    pub(crate) fn gain_of(&self, channel: &str) -> f64 {
         let here = self.given.iter();
         let here = here.filter(|placed| placed.at == Location::Channel(channel.into()));
         let gains = here.filter_map(|placed| match placed.action() {
@@ -408,32 +380,4 @@ pub(crate) fn rms_about_mean<'a, I: Iterator<Item = &'a f64>>(values: impl Fn() 
     let mean = sum / count.max(1.0);
     let square: f64 = values().map(|value| (value - mean) * (value - mean)).sum();
     (square / count.max(1.0)).sqrt()
-}
-
-/// Typical size of each entry of an initial state: what the outputs allow to guess, one elsewhere.
-pub(crate) fn state_scale(problem: &Problem) -> Vec<f64> {
-    let n = problem.model.dof_count();
-    let std = problem.motion_std();
-    let mut displacement = 0.0_f64;
-    for (output, std) in problem.model.outputs.iter().zip(&std) {
-        if output.kind == OutputKind::Displacement {
-            displacement = displacement.max(*std);
-        }
-    }
-    let step = problem.runs.first().map_or(1.0, |run| run.time_step_s);
-    let size = if displacement > 0.0 {
-        displacement
-    } else {
-        1e-3
-    };
-    let velocity = size / (100.0 * step);
-    // Coordinates that are no places are scaled to about one.
-    let own = problem.model.masses.iter();
-    let is_scaled: Vec<bool> = own.map(|m| problem.model.has_own_scale(&m.name)).collect();
-    let scale = |i: usize| match i {
-        i if is_scaled[i % n] => 1.0,
-        i if i < n => size,
-        _ => velocity,
-    };
-    (0..2 * n).map(scale).collect()
 }

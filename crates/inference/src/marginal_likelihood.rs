@@ -11,9 +11,10 @@
 //!
 //! (2) is the integral of (1) over the prior N(m, S), with the weight w. M and H are those of the fit
 //! ([`simgap_estimate::Fit::misfit`], [`simgap_estimate::Curvature`]); g balances the
-//! prior, under which the fit was made, and is zero for initial states, which had none. A direction that the data do not see has H = 0 and costs nothing but the distance of its
-//! estimate from the mean of the prior; one that they see costs ½ ln(S H). Initial states have a wide prior that is the
-//! same in all sets.
+//! prior, under which the fit was made. A direction that the data do not see has H = 0 and costs nothing but the distance of its
+//! estimate from the mean of the prior; one that they see costs ½ ln(S H). Initial states have the same prior in all sets, about
+//! zero and as wide as the motion goes ([`simgap_estimate::Problem::state_std_of`]): a law that holds in a record only from far
+//! outside of its motion has that against it.
 //!
 //! Reference: \[Kass1995\], section 4.1.
 
@@ -24,9 +25,6 @@ use simgap_estimate::{Coordinate, Fit, Owner};
 use simgap_model::Location;
 
 use crate::candidate_model::{NominalPrior, is_nominal};
-
-/// Standard deviation of the prior on an initial state, in units of its typical size.
-pub(crate) const STATE_STD: f64 = 10.0;
 
 /// ln Z of (2), with the weights of values taken together ([`simgap_effects::Effect::weight`]); minus infinity where an effect has
 /// vanished, since the set is then a smaller one, and where its prior has no support.
@@ -90,18 +88,24 @@ pub(crate) fn term(
     scale_at: &impl Fn(&Location) -> Option<SiteScale>,
     nominal: NominalPrior,
 ) -> Option<Term> {
-    let plain = |apart: f64, std: f64, factor: f64| Term {
+    let Coordinate {
+        value,
+        scale,
+        prior_std: std,
+        ..
+    } = *coordinate;
+    // Under the prior of the fit.
+    let plain = |apart: f64| Term {
         index,
-        factor,
+        factor: 1.0 / scale,
         apart,
         std,
         log_weight: 0.0,
         pull: apart / std,
     };
-    let Coordinate { value, scale, .. } = *coordinate;
     match coordinate.owner {
-        Owner::State => Some(plain(0.0, STATE_STD, 1.0)),
-        Owner::Nominal(..) => Some(plain(1.0 - value, coordinate.prior_std, 1.0 / scale)),
+        Owner::State => Some(plain(-value)),
+        Owner::Nominal(..) => Some(plain(1.0 - value)),
         Owner::Effect(e, i) => {
             let placed = effects.get(e)?;
             let parameter = placed.effect.parameters().get(i)?;

@@ -22,6 +22,8 @@ const EXPECTED_EFFECTS: f64 = 1.0;
 pub struct ModelSpace {
     /// Every candidate, with the typical sizes at its place.
     pub candidates: Vec<(Candidate, SiteScale)>,
+    /// Standard deviation of the prior on each entry of an initial state.
+    state_std: Vec<f64>,
 }
 
 impl ModelSpace {
@@ -64,6 +66,7 @@ impl ModelSpace {
         });
         Ok(ModelSpace {
             candidates: sized.collect::<Result<_, EstimateError>>()?,
+            state_std: problem.state_std_of(baseline)?,
         })
     }
 
@@ -74,19 +77,19 @@ impl ModelSpace {
         let wanted = candidates.filter(|(candidate, _)| is_wanted(candidate.effect.family()));
         ModelSpace {
             candidates: wanted.cloned().collect(),
+            state_std: self.state_std.clone(),
         }
     }
 
-    /// Typical sizes at every place.
-    #[must_use]
-    pub fn scales(&self) -> Vec<(Location, SiteScale)> {
-        let mut scales: Vec<(Location, SiteScale)> = vec![];
+    /// Puts a problem under these priors: on the values of effects by the sizes at their places, and on initial states.
+    pub fn put_priors(&self, problem: &mut Problem) {
+        problem.scales.clear();
         for (candidate, scale) in &self.candidates {
-            if scales.iter().all(|(at, _)| *at != candidate.at) {
-                scales.push((candidate.at.clone(), *scale));
+            if problem.scales.iter().all(|(at, _)| *at != candidate.at) {
+                problem.scales.push((candidate.at.clone(), *scale));
             }
         }
-        scales
+        problem.state_std.clone_from(&self.state_std);
     }
 
     /// Typical sizes at a place of a candidate.

@@ -224,6 +224,26 @@ impl Simulator {
         Ok(path)
     }
 
+    /// The largest size of each entry of the state along a run: displacements of all coordinates, then velocities. None of a simulator
+    /// of the user's, which has no state of ours.
+    ///
+    /// # Errors
+    /// [`SimulateError`] when the run cannot be simulated.
+    pub fn largest_state(&self, run: &Run, initial: &[f64]) -> Result<Vec<f64>, SimulateError> {
+        if self.outside.is_some() {
+            return Ok(vec![]);
+        }
+        let ready = Workshop::default().prepare(self, run, initial)?;
+        let mut largest = vec![0.0; initial.len()];
+        self.march(run, &ready, &|_| true, |at, _| {
+            let state = at.displacement.iter().chain(at.velocity);
+            for (largest, value) in largest.iter_mut().zip(state) {
+                *largest = f64::max(*largest, value.abs());
+            }
+        });
+        Ok(largest)
+    }
+
     /// The mass (kg, kg m²) that a force finds at a port of a simulator over one sample of a run; `None` elsewhere.
     ///
     /// # Errors

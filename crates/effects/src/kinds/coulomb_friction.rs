@@ -1,5 +1,7 @@
 //! Dry friction of constant level.
 
+use std::f64::consts::{PI, SQRT_2};
+
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_integrate::lanes;
 
@@ -66,6 +68,23 @@ impl Effect for CoulombFriction {
 
     fn starts(&self, scale: &SiteScale) -> Vec<Vec<f64>> {
         vec![vec![0.1 * scale.force_n]]
+    }
+
+    /// Of a damper that loses as much, where the motion is a sine.
+    fn resembles(&self) -> &'static [&'static str] {
+        &["damping_error"]
+    }
+
+    /// A damper c that loses as much in a cycle of a sine as friction F: π c ω X² = 4 F X, or F = π/(2√2) c v with v the rms of the
+    /// velocity ([Inman2014], section 2.7).
+    fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
+        if !self.resembles().contains(&kind) {
+            return vec![];
+        }
+        let damping = values[0] * scale.damping_n_s_per_m;
+        let friction = PI / (2.0 * SQRT_2) * damping * scale.velocity_m_per_s;
+        let is_start = friction > 0.0 && friction.is_finite();
+        is_start.then(|| vec![friction]).into_iter().collect()
     }
 
     fn action(&self, values: &[f64]) -> Action {

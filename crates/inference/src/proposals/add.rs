@@ -147,10 +147,8 @@ impl Search<'_> {
                 // Of all channels together: the same at every input.
                 let is_input = |at: &Location| matches!(at, Location::Input(_));
                 let known = left.iter().find(|(of, _)| is_input(of) && is_input(at));
-                let late_s = known.map_or_else(
-                    || self.problem.late(&base.fit, at),
-                    |(_, left)| left.late_s,
-                );
+                let late_s =
+                    known.map_or_else(|| self.problem.late(&base.fit, at), |(_, left)| left.late_s);
                 let left_at = Left {
                     lines_hz: self.problem.lines_left(&base.fit, at),
                     carriers_hz: self.problem.carriers_left(&base.fit, at),

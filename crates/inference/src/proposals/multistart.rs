@@ -6,7 +6,7 @@
 
 use simgap_effects::{Effect, SiteScale};
 use simgap_estimate::{
-    Base, Candidate, EstimateError, FitOptions, Score, Start, fit, fit_initial_states,
+    Base, Candidate, EstimateError, FitOptions, Score, Start, fit, fit_initial_states, halton,
     linearise_at, score_outright, score_shapes,
 };
 
@@ -28,8 +28,6 @@ const STARTS_OF_EACH: usize = 2;
 /// Sets of these that are finished, and in how many steps: from afar it takes more.
 const FINISHED: usize = 3;
 const STEPS: usize = 30;
-/// Bases of the low-discrepancy sequence.
-const PRIMES: [usize; 6] = [2, 3, 5, 7, 11, 13];
 
 impl Search<'_> {
     /// Every effect of the machine beside those of `base`, fitted from the best of many values. Best first.
@@ -152,7 +150,7 @@ fn points(candidate: &Candidate, scale: &SiteScale) -> Vec<Vec<f64>> {
                 if parameter.per_record {
                     return *value;
                 }
-                let share = radical_inverse(i + 1, PRIMES[k % PRIMES.len()]);
+                let share = halton(i + 1, k);
                 let either = !shaped && parameter.lower < 0.0 && parameter.upper > 0.0;
                 // The halves of a range each have all of the spread.
                 let (sign, share) = match 2.0 * share {
@@ -171,26 +169,4 @@ fn points(candidate: &Candidate, scale: &SiteScale) -> Vec<Vec<f64>> {
     let count = if starts.is_empty() { 0 } else { most };
     let each = starts.iter().cycle().take(count);
     each.enumerate().map(|(i, start)| moved(i, start)).collect()
-}
-
-/// The digits of a number in a base, mirrored at the point: evenly spread over 0 to 1.
-fn radical_inverse(mut number: usize, base: usize) -> f64 {
-    let (mut value, mut digit) = (0.0, 1.0);
-    while number > 0 {
-        digit /= base as f64;
-        value += digit * (number % base) as f64;
-        number /= base;
-    }
-    value
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn verify_radical_inverses() {
-        let found: Vec<f64> = (1..5).map(|i| radical_inverse(i, 2)).collect();
-        assert_eq!(found, [0.5, 0.25, 0.75, 0.125]);
-    }
 }

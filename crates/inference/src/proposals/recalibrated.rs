@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use simgap_effects::{Family, Placed};
 use simgap_estimate::{EstimateError, FitOptions, Start, linearise_at};
 
-use crate::candidate_model::{CandidateModel, is_nominal, is_of, name, rank, remove};
+use crate::candidate_model::{CandidateModel, add, is_nominal, is_of, name, rank, remove};
 use crate::extended::Visited;
 use crate::proposals::model_reduction::Reduced;
 use crate::search::{MOST_EFFECTS, Search, counts, size};
@@ -25,6 +25,8 @@ const BESIDE: usize = 6;
 /// Sets that are extended, and sets that are proposed.
 const EXTENDED: usize = 1;
 const PROPOSED: usize = 6;
+/// What an effect takes over of a re-estimated parameter that it resembles: half, and nearly all.
+const SHARES: [f64; 2] = [0.5, 0.9];
 /// Sets of wrong parameters that are fitted of each, besides that of all.
 const LIKELIEST: usize = 2;
 
@@ -58,6 +60,11 @@ impl Search<'_> {
         if !self.is_spent() {
             found.extend(wide.fit_joint(recalibrated, &linear));
         }
+        if !self.is_spent() {
+            let shared = wide.shared(recalibrated);
+            let fitted = self.try_each(&shared, |start| wide.fit(start).ok());
+            found.extend(fitted.into_iter().flatten());
+        }
         found.push(recalibrated.clone());
         rank(&mut found);
         let mut larger = vec![];
@@ -70,6 +77,34 @@ impl Search<'_> {
         // The parameters alone have been proposed before.
         found.retain(|set| !set.effects().is_empty());
         Ok(self.with_parameters_named(found))
+    }
+
+    /// Starts in which what a re-estimated parameter does is shared with an effect that resembles it. Dry friction has the wrong sign in
+    /// its score beside a damper that was fitted to what both lose; between the two lies a valley with many steps.
+    fn shared(&self, recalibrated: &CandidateModel) -> Vec<Start> {
+        let estimate = &recalibrated.fit.estimate;
+        let parts = estimate.nominal.iter().enumerate();
+        let parts = parts.flat_map(|parameter| SHARES.map(|share| (parameter, share)));
+        let shared = parts.flat_map(|((index, parameter), share)| {
+            let kind = parameter.effect.kind();
+            let part = |share: f64| -> Vec<f64> {
+                parameter.values.iter().map(|value| share * value).collect()
+            };
+            let candidates = self.space.candidates.iter();
+            let alike = candidates.filter(move |(candidate, _)| {
+                candidate.at == parameter.at && candidate.effect.resembles().contains(&kind)
+            });
+            alike.flat_map(move |(candidate, scale)| {
+                let values = candidate.effect.grown_from(kind, &part(share), scale);
+                values.into_iter().map(move |values| {
+                    let mut start = estimate.clone();
+                    start.nominal[index].values = part(1.0 - share);
+                    let placed = Placed::new(candidate.effect, candidate.at.clone(), values);
+                    add(&start, placed)
+                })
+            })
+        });
+        shared.collect()
     }
 
     /// Options of a fit beside nominal parameters under a wide prior.

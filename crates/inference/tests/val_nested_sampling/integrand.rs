@@ -5,7 +5,7 @@
 //! ```
 //!
 //! V_c is the mean square of measured minus predicted over the samples that count. The priors are those of the catalogue, of
-//! the stated uncertainties, and for an initial state a normal one about its estimate of [`STATE_STD`] typical sizes. Each
+//! the stated uncertainties, and for an initial state a normal one about zero that is as wide as the motion goes. Each
 //! value is a rising function of a coordinate that is even over 0 to 1.
 
 use std::f64::consts::TAU;
@@ -19,9 +19,6 @@ use simgap_inference::CandidateModel;
 use simgap_simulate::{Job, predict_all};
 
 use crate::prior::{Law, Marginal};
-
-/// Standard deviation of the prior on an initial state, in units of its typical size: that of the core.
-const STATE_STD: f64 = 10.0;
 
 /// Where values are drawn from; initial states are drawn about their estimates in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -330,9 +327,8 @@ fn spread(set: &CandidateModel) -> Vec<f64> {
     let mut information = curvature.hessian.clone();
     for (i, coordinate) in curvature.coordinates.iter().enumerate() {
         information[(i, i)] += match coordinate.owner {
-            Owner::Nominal(..) => (coordinate.scale / coordinate.prior_std).powi(2),
+            Owner::Nominal(..) | Owner::State => (coordinate.scale / coordinate.prior_std).powi(2),
             Owner::Effect(..) => 1.0,
-            Owner::State => STATE_STD.powi(-2),
         };
     }
     let len = information.nrows();
@@ -352,8 +348,8 @@ fn law(
 ) -> Law {
     match coordinate.owner {
         Owner::State => Law::Normal {
-            mean: coordinate.value,
-            std: STATE_STD * coordinate.scale,
+            mean: 0.0,
+            std: coordinate.prior_std,
         },
         Owner::Nominal(..) => Law::Normal {
             mean: 1.0,

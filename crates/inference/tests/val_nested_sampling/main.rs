@@ -69,7 +69,7 @@ impl Solved {
         let baseline = fit(&problem, &nothing, &white).unwrap();
         let noise = NoiseModel::new(&problem, &baseline, &baseline).unwrap();
         let space = ModelSpace::new(&problem, &baseline, &[]).unwrap();
-        problem.scales = space.scales();
+        space.put_priors(&mut problem);
         let budget = Budget {
             progress: &|_| {},
             is_spent: &|| false,

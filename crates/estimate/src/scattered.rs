@@ -1,0 +1,104 @@
+//! Initial states beside the measured ones, for motions that part.
+//!
+//! A pendulum that stands upright, a mass that friction holds: states that differ by less than a sensor shows go different ways, and
+//! the objective of an initial state has more valleys than a descent finds.
+
+use std::sync::Arc;
+
+use simgap_simulate::{Job, Simulator};
+
+use crate::problem::rms_about_mean;
+use crate::{EstimateError, Problem};
+
+/// States that are tried, and how far they are from the measured one, over how far the motion goes.
+const TRIED: usize = 256;
+const NEAR: f64 = 0.01;
+/// Of them the best, which are fitted.
+const FITTED: usize = 3;
+/// Share of the motion that is left, rms, from which a prediction is led astray.
+const ASTRAY: f64 = 0.1;
+
+/// Whether what is left of a run is so much of some output that the two may have parted.
+pub(crate) fn is_astray(problem: &Problem, discrepancy: &[Vec<f64>]) -> bool {
+    let mut channels = discrepancy.iter().zip(problem.motion_std());
+    channels.any(|(left, std)| rms_about_mean(|| left.iter()) > ASTRAY * std)
+}
+
+/// The best of many states about one, with which the only run of a problem begins; none where it is not known how far the motion
+/// goes ([`Problem::state_std`]).
+///
+/// # Errors
+/// [`EstimateError`] when the model cannot be propagated.
+pub(crate) fn scattered(alone: &Problem, state: &[f64]) -> Result<Vec<Vec<f64>>, EstimateError> {
+    let Some(run) = alone.runs.first().filter(|_| !alone.state_std.is_empty()) else {
+        return Ok(vec![]);
+    };
+    let simulator: Arc<Simulator> = Arc::new(alone.simulator(&[], 0)?);
+    let about = |number: usize| -> Vec<f64> {
+        let entries = state.iter().zip(&alone.state_std).enumerate();
+        let moved = |(k, (value, std)): (usize, (&f64, &f64))| {
+            value + NEAR * std * (2.0 * halton(number, k) - 1.0)
+        };
+        entries.map(moved).collect()
+    };
+    let states: Vec<Vec<f64>> = (1..=TRIED).map(about).collect();
+    let jobs: Vec<Job<'_>> = states
+        .iter()
+        .map(|initial| Job {
+            simulator: &simulator,
+            run,
+            initial,
+            smooth: false,
+        })
+        .collect();
+    let std = alone.motion_std();
+    let left = |predicted: &Vec<Vec<f64>>| -> f64 {
+        let channels = predicted.iter().zip(&run.measured).zip(&std);
+        let squares = channels.filter_map(|((predicted, measured), std)| {
+            let pairs = predicted.iter().zip(measured.as_ref()?);
+            let square: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
+            Some(square / (std * std))
+        });
+        squares.sum()
+    };
+    let mut tried: Vec<(f64, Vec<f64>)> = alone
+        .predict_all(&jobs)
+        .into_iter()
+        .zip(&states)
+        // A state that cannot be simulated from is not the right one.
+        .filter_map(|(predicted, state)| Some((left(&predicted.ok()?), state.clone())))
+        .filter(|(left, _)| left.is_finite())
+        .collect();
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(tried
+        .into_iter()
+        .take(FITTED)
+        .map(|(_, state)| state)
+        .collect())
+}
+
+/// A coordinate of a point of Halton's sequence, evenly spread over 0 to 1: the digits of its number in a prime base, mirrored at the
+/// point. Coordinates beyond the sixth repeat the bases.
+#[must_use]
+pub fn halton(mut number: usize, coordinate: usize) -> f64 {
+    const PRIMES: [usize; 6] = [2, 3, 5, 7, 11, 13];
+    let base = PRIMES[coordinate % PRIMES.len()];
+    let (mut value, mut digit) = (0.0, 1.0);
+    while number > 0 {
+        digit /= base as f64;
+        value += digit * (number % base) as f64;
+        number /= base;
+    }
+    value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_digits_are_mirrored() {
+        let found: Vec<f64> = (1..5).map(|i| halton(i, 0)).collect();
+        assert_eq!(found, [0.5, 0.25, 0.75, 0.125]);
+    }
+}
