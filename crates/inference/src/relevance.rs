@@ -16,7 +16,7 @@ use crate::noise_model::{NOISE_KNOWN, stored_rounding_variance};
 use crate::search::Search;
 
 /// Share of what is left above the noise that an effect beside others explains at least, mean square.
-const OF_REST: f64 = 0.75;
+const OF_REST: f64 = 0.5;
 
 impl Search<'_> {
     /// Share of the gap that a set closes and another does not, in the channel that profits most.

@@ -20,6 +20,8 @@ use crate::search::{FITTED, Search};
 pub(crate) const ROUGH_STEPS: usize = 3;
 /// Steps of a hidden mass as a multiple: the way of a mode to its frequency, mass and stiffness winds.
 const WINDING: usize = 4;
+/// How often the last effect of a start is halved from which the plant runs away.
+const HALVINGS: usize = 5;
 /// Sets that are finished of more: those of the best starts, and those of the others that are the best once they are fitted roughly.
 pub(crate) const FINISHED: [usize; 2] = [4, 8];
 
@@ -219,14 +221,43 @@ impl Search<'_> {
                 },
                 ..self.options.clone()
             };
-            // A start from which the plant runs away is no candidate.
-            Some(self.candidate_model(base.fit(start, &options).ok()?))
+            // A start from which the plant runs away is no candidate, nor is half of it, and so on: a spring that softens is
+            // scored where the motion is small.
+            let mut start = start.clone();
+            let mut found = base.fit(&start, &options).ok()?;
+            for _ in 0..HALVINGS {
+                if found.misfit.is_finite() || !halve_last(&mut start) {
+                    break;
+                }
+                found = base.fit(&start, &options).ok()?;
+            }
+            Some(self.candidate_model(found))
         });
         let mut fitted: Vec<CandidateModel> = fitted.into_iter().flatten().collect();
         fitted.retain(|set| set.log_marginal_likelihood.is_finite());
         rank(&mut fitted);
         fitted
     }
+}
+
+/// Halves the sizes of the last effect of a start; whether there are any.
+fn halve_last(start: &mut Start) -> bool {
+    let Some(last) = start.effects.last_mut() else {
+        return false;
+    };
+    let parameters = last.effect.parameters().iter();
+    let sizes = parameters
+        .zip(&mut last.values)
+        .filter_map(|(parameter, value)| {
+            let neutral = parameter.neutral.filter(|neutral| neutral.is_finite())?;
+            Some((neutral, value))
+        });
+    let mut is_smaller = false;
+    for (neutral, value) in sizes {
+        is_smaller |= *value != neutral;
+        *value = 0.5 * (neutral + *value);
+    }
+    is_smaller
 }
 
 /// The best `most` scores, each candidate in its best shape. Of single effects two shapes are picked, and every kind gets
