@@ -96,6 +96,54 @@ pub fn halton(mut number: usize, coordinate: usize) -> f64 {
 mod tests {
     use super::*;
 
+    /// A pendulum let go near its upper rest, seen to a hundredth of a radian: from where it was seen it falls the other way, and
+    /// one of many states beside that follows it.
+    #[test]
+    fn verify_a_state_beside_the_measured_one_follows_what_parts() {
+        let text = "schema = \"simgap-model/1\"\nname = \"pendulum\"\n\
+            [[mass]]\nname = \"bob\"\nvalue = 0.14\n\
+            [[pendulum]]\nat = \"bob\"\nvalue = 2.8\n\
+            [[output]]\nchannel = \"q\"\nkind = \"displacement\"\nat = \"bob\"\n";
+        let model = simgap_model::Model::from_toml(text).unwrap();
+        let run = simgap_simulate::Run {
+            name: "fall".into(),
+            start_s: 0.0,
+            time_step_s: 0.005,
+            len: 500,
+            first_index: 0,
+            inputs: vec![],
+            measured: vec![None],
+            mended: simgap_simulate::Mended::default(),
+        };
+        let mut problem = Problem::new(&model, vec![]).unwrap();
+        let simulator = problem.simulator(&[], 0).unwrap();
+        let fall = |state: &[f64]| simulator.predict(&run, state).unwrap().swap_remove(0);
+        let seen = fall(&[3.139, 0.0]);
+        let measured = [3.145, 0.0];
+        let apart = |state: &[f64]| {
+            let left: Vec<f64> = fall(state).iter().zip(&seen).map(|(a, b)| a - b).collect();
+            rms_about_mean(|| left.iter()) / rms_about_mean(|| seen.iter())
+        };
+        assert!(apart(&measured) > 1.0, "{}", apart(&measured));
+        let left: Vec<f64> = fall(&measured)
+            .iter()
+            .zip(&seen)
+            .map(|(a, b)| a - b)
+            .collect();
+        problem.runs = vec![simgap_simulate::Run {
+            measured: vec![Some(seen.clone())],
+            ..run.clone()
+        }];
+        assert!(is_astray(&problem, &[left]));
+        assert!(scattered(&problem, &measured).unwrap().is_empty());
+        problem.state_std = vec![3.2, 9.0];
+        let found = scattered(&problem, &measured).unwrap();
+        assert_eq!(found.len(), FITTED);
+        let best = &found[0];
+        assert!(apart(best) < ASTRAY, "{best:?} {}", apart(best));
+        assert!((best[0] - measured[0]).abs() <= NEAR * 3.2 && best[1].abs() <= NEAR * 9.0);
+    }
+
     #[test]
     fn verify_digits_are_mirrored() {
         let found: Vec<f64> = (1..5).map(|i| halton(i, 0)).collect();

@@ -96,6 +96,58 @@ fn verify_initial_states_are_found_where_motions_part() {
     }
 }
 
+/// A shaft without a spring whose speed is measured.
+const SHAFT: &str = r#"schema = "simgap-model/1"
+name = "shaft"
+[[mass]]
+name = "shaft"
+value = 2.0
+[[input]]
+channel = "u"
+kind = "force"
+at = "shaft"
+[[output]]
+channel = "v"
+kind = "velocity"
+at = "shaft"
+"#;
+
+/// v = a t and x = a t²/2: as far as the shaft comes in its records is how far away it may begin.
+#[test]
+fn verify_the_prior_of_a_state_is_as_wide_as_the_motion_goes() {
+    let model = model(SHAFT);
+    let runs = [300, 200].map(|len| truth(&model, &[], vec![3.0; len], 0.01, &[0.0, 0.0]));
+    let mut problem = problem(&model, runs[0].clone());
+    problem.runs.push(runs[1].clone());
+    let fit = fit_initial_states(&problem, &[], &strict()).unwrap();
+    let std = problem.state_std_of(&fit).unwrap();
+    let (time_s, a) = (2.99_f64, 1.5);
+    assert!(
+        (std[0] / (0.5 * a * time_s * time_s) - 1.0).abs() < 1e-6,
+        "{std:?}"
+    );
+    assert!((std[1] / (a * time_s) - 1.0).abs() < 1e-6, "{std:?}");
+}
+
+/// No record shows where the shaft stands: under the prior it stands at zero, without it wherever it began.
+#[test]
+fn verify_a_state_that_nothing_shows_is_drawn_to_the_mean_of_its_prior() {
+    let model = model(SHAFT);
+    let run = truth(&model, &[], vec![3.0; 300], 0.01, &[0.0, 0.0]);
+    let mut problem = problem(&model, run);
+    let far = start(vec![], vec![], &[5000.0, 0.0]);
+    let free = fit(&problem, &far, &strict()).unwrap();
+    assert_eq!(free.estimate.initial[0][0], 5000.0);
+    problem.state_std = problem.state_std_of(&free).unwrap();
+    problem.state_std[0] = 7.0;
+    let held = fit(&problem, &far, &strict()).unwrap();
+    assert!(
+        held.estimate.initial[0][0].abs() < 1e-6,
+        "{:?}",
+        held.estimate.initial
+    );
+}
+
 fn baseline(std: f64) -> (simgap_estimate::Problem, Fit, FitOptions) {
     let model = model(OSCILLATOR);
     let pushed = [placed(

@@ -81,7 +81,8 @@ impl ModelSpace {
         }
     }
 
-    /// Puts a problem under these priors: on the values of effects by the sizes at their places, and on initial states.
+    /// Puts a problem under these priors: on the values of effects by the sizes at their places, and on initial states. Without those
+    /// a set has no marginal likelihood.
     pub fn put_priors(&self, problem: &mut Problem) {
         problem.scales.clear();
         for (candidate, scale) in &self.candidates {

@@ -1,7 +1,8 @@
 //! Records of machines that hold an effect, and a search without an end of its own.
 
 use simgap_effects::Placed;
-use simgap_inference::Budget;
+use simgap_estimate::{FitOptions, Problem, Start, fit};
+use simgap_inference::{Budget, CandidateModel, ModelSpace, NoiseModel, Search};
 use simgap_model::Model;
 use simgap_simulate::{Mended, Run, Simulator};
 
@@ -38,4 +39,20 @@ pub(crate) fn without_end() -> Budget<'static> {
         progress: &|_| {},
         is_spent: &|| false,
     }
+}
+
+/// The sets that a search finds in a problem of one output, and in a part of it first where there is one; best first.
+pub(crate) fn found(problem: &mut Problem, part: Option<&Problem>) -> Vec<CandidateModel> {
+    let start = Start {
+        effects: vec![],
+        nominal: vec![],
+        initial: problem.initial_guess(),
+    };
+    let baseline = fit(problem, &start, &FitOptions::white(1)).unwrap();
+    let noise = NoiseModel::new(problem, &baseline, &baseline).unwrap();
+    let space = ModelSpace::new(problem, &baseline, &[]).unwrap();
+    space.put_priors(problem);
+    let std = problem.output_std();
+    let mut search = Search::new(problem, &noise, space, &std, without_end());
+    search.find(&start, part).unwrap()
 }

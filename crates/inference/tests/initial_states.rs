@@ -61,7 +61,7 @@ fn sweep(model: &Model) -> Run {
 #[test]
 fn verify_a_body_at_rest_in_its_play_is_found_from_afar() {
     let model = Model::from_toml(ISOLATOR).unwrap();
-    let problem = Problem::new(&model, vec![sweep(&model)]).unwrap();
+    let mut problem = Problem::new(&model, vec![sweep(&model)]).unwrap();
     let nothing = Start {
         effects: vec![],
         nominal: vec![],
@@ -70,6 +70,7 @@ fn verify_a_body_at_rest_in_its_play_is_found_from_afar() {
     let baseline = fit(&problem, &nothing, &FitOptions::white(1)).unwrap();
     let noise = NoiseModel::new(&problem, &baseline, &baseline).unwrap();
     let space = ModelSpace::new(&problem, &baseline, &[]).unwrap();
+    space.put_priors(&mut problem);
     let mut astray = 0;
     for state in [[0.02, 0.0], [-0.02, 0.0], [0.0, 0.2], [0.0, -0.2]] {
         let mut search = Search::new(

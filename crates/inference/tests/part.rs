@@ -1,12 +1,12 @@
 //! Long records: what a search in a part of them finds, fitted to all.
 
 use simgap_effects::{Placed, find};
-use simgap_estimate::{FitOptions, Problem, Start, fit};
-use simgap_inference::{CandidateModel, ModelSpace, NoiseModel, Search};
+use simgap_estimate::Problem;
+use simgap_inference::CandidateModel;
 use simgap_model::{Location, Model};
 use simgap_simulate::Run;
 
-use crate::common::{record, without_end};
+use crate::common::{self, record};
 
 const AXIS: &str = r#"
 schema = "simgap-model/1"
@@ -48,19 +48,9 @@ fn tones(model: &Model) -> Run {
 }
 
 /// The best set, and what finding it cost.
-fn found(problem: &Problem, part: Option<&Problem>) -> (CandidateModel, u64) {
-    let start = Start {
-        effects: vec![],
-        nominal: vec![],
-        initial: problem.initial_guess(),
-    };
-    let baseline = fit(problem, &start, &FitOptions::white(1)).unwrap();
-    let noise = NoiseModel::new(problem, &baseline, &baseline).unwrap();
-    let space = ModelSpace::new(problem, &baseline, &[]).unwrap();
+fn found(problem: &mut Problem, part: Option<&Problem>) -> (CandidateModel, u64) {
     let before = problem.effort.spent();
-    let std = problem.output_std();
-    let mut search = Search::new(problem, &noise, space, &std, without_end());
-    let pool = search.find(&start, part).unwrap();
+    let pool = common::found(problem, part);
     (pool[0].clone(), problem.effort.spent() - before)
 }
 
@@ -69,11 +59,12 @@ fn found(problem: &Problem, part: Option<&Problem>) -> (CandidateModel, u64) {
 fn verify_what_a_part_proposes_is_what_all_samples_say() {
     let model = Model::from_toml(AXIS).unwrap();
     let run = tones(&model);
-    let problem = Problem::new(&model, vec![run.clone()]).unwrap();
-    let (whole, cost) = found(&problem, None);
+    let mut problem = Problem::new(&model, vec![run.clone()]).unwrap();
+    let (whole, cost) = found(&mut problem, None);
     assert_eq!(whole.key(), ["cubic_stiffness between slide and ground"]);
     for part in [run.slice(2000..3500), run.thinned(5)] {
-        let (of_part, less) = found(&problem, Some(&problem.with_runs(vec![part])));
+        let part = problem.with_runs(vec![part]);
+        let (of_part, less) = found(&mut problem, Some(&part));
         assert_eq!(of_part.key(), whole.key());
         let ratio = of_part.effects()[0].values[0] / CUBIC;
         assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");

@@ -76,7 +76,7 @@ impl Effect for CoulombFriction {
     }
 
     /// A damper c that loses as much in a cycle of a sine as friction F: π c ω X² = 4 F X, or F = π/(2√2) c v with v the rms of the
-    /// velocity ([Inman2014], section 2.7).
+    /// velocity (\[DenHartog1956\], chapter 8).
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
         if !self.resembles().contains(&kind) {
             return vec![];
@@ -93,5 +93,36 @@ impl Effect for CoulombFriction {
 
     fn experiment(&self) -> &'static str {
         "the same motion at a tenth of the amplitude: friction of constant level then dominates"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_friction_grown_from_a_damper_loses_as_much_in_a_cycle() {
+        let (damping, speed, steps) = (30.0, 0.4_f64, 100_000);
+        let scale = SiteScale::plain(1.0, speed / SQRT_2, 1.0).with_members(1.0, damping);
+        let grown = CoulombFriction.grown_from("damping_error", &[0.5], &scale);
+        let velocity = |n: usize| speed * (2.0 * PI * n as f64 / steps as f64).sin();
+        let damper: f64 = (0..steps)
+            .map(|n| 0.5 * damping * velocity(n).powi(2))
+            .sum();
+        let friction: f64 = (0..steps).map(|n| grown[0][0] * velocity(n).abs()).sum();
+        assert!(
+            (friction / damper - 1.0).abs() < 1e-6,
+            "{friction} {damper}"
+        );
+        assert!(
+            CoulombFriction
+                .grown_from("stiffness_error", &[0.5], &scale)
+                .is_empty()
+        );
+        assert!(
+            CoulombFriction
+                .grown_from("damping_error", &[0.0], &scale)
+                .is_empty()
+        );
     }
 }
