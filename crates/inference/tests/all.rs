@@ -1,8 +1,6 @@
 //! The integration tests, one program: each file is one of its modules.
 #![allow(clippy::unwrap_used)]
 
-mod beside;
 mod common;
 mod initial_states;
 mod part;
-mod softening;

@@ -285,3 +285,129 @@ impl CandidateModel {
         self.effects().iter().any(|placed| is_of(placed, candidate))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use simgap_effects::{Placed, find};
+    use simgap_estimate::{Problem, fit};
+    use simgap_model::Model;
+    use simgap_simulate::{Mended, Run, Simulator};
+
+    use super::*;
+    use crate::candidate_model::add;
+    use crate::model_space::ModelSpace;
+    use crate::noise_model::NoiseModel;
+    use crate::search::Budget;
+
+    fn problem(text: &str, time_step_s: f64, inputs: Vec<Vec<f64>>, measured: Vec<f64>) -> Problem {
+        let run = Run {
+            name: "run".into(),
+            start_s: 0.0,
+            time_step_s,
+            len: measured.len(),
+            first_index: 0,
+            inputs,
+            measured: vec![Some(measured)],
+            mended: Mended::default(),
+        };
+        Problem::new(&Model::from_toml(text).unwrap(), vec![run]).unwrap()
+    }
+
+    /// What is asked of a search about the set of a start.
+    fn asked<T>(
+        problem: &mut Problem,
+        start: &Start,
+        ask: impl FnOnce(&Search<'_>, &CandidateModel, &Base<'_>) -> T,
+    ) -> T {
+        let nothing = Start {
+            effects: vec![],
+            ..start.clone()
+        };
+        let baseline = fit(problem, &nothing, &FitOptions::white(1)).unwrap();
+        let noise = NoiseModel::new(problem, &baseline, &baseline).unwrap();
+        let space = ModelSpace::new(problem, &baseline, &[]).unwrap();
+        space.put_priors(problem);
+        let std = problem.output_std();
+        let budget = Budget {
+            progress: &|_| {},
+            is_spent: &|| false,
+        };
+        let search = Search::new(problem, &noise, space, &std, budget);
+        let base = search.fit(start).unwrap();
+        let linear = linearise_at(problem, &base.fit, &search.options).unwrap();
+        ask(&search, &base, &linear)
+    }
+
+    /// A gain that swings slowly, beside a delay whose own carriers are others.
+    #[test]
+    fn verify_carriers_are_those_of_what_a_set_leaves() {
+        let text = "schema = \"simgap-model/1\"\nname = \"stand\"\n\
+            [[damper]]\nname = \"c\"\nbetween = [\"rod\", \"ground\"]\ndamping = 80.0\n\
+            [[input]]\nchannel = \"u\"\nkind = \"displacement\"\nat = \"rod\"\n\
+            [[output]]\nchannel = \"F\"\nkind = \"force\"\nbetween = [\"rod\", \"ground\"]\n";
+        let tones = |n: usize| {
+            let t = 0.013 * n as f64;
+            0.02 * (2.1 * t).sin() + 0.013 * (5.2 * t + 1.0).sin() + 0.008 * (9.0 * t).cos()
+        };
+        let at = Location::Channel("F".into());
+        let placed = |kind: &str, values: &[f64]| {
+            Placed::new(find(kind).unwrap(), at.clone(), values.to_vec())
+        };
+        let truth = [
+            placed("gain_ripple", &[0.25, 0.173, -0.3]),
+            placed("sensor_delay", &[0.088]),
+        ];
+        let inputs = vec![(0..3000).map(tones).collect::<Vec<f64>>()];
+        let mut problem = problem(text, 0.013, inputs, vec![0.0; 3000]);
+        let simulator = Simulator::new(&problem.model, &truth, 1).unwrap();
+        let seen = simulator.predict(&problem.runs[0], &[]).unwrap();
+        problem.runs[0].measured = seen.into_iter().map(Some).collect();
+        let start = Start {
+            effects: vec![placed("sensor_delay", &[0.088])],
+            nominal: vec![],
+            initial: vec![vec![]],
+        };
+        let resolution_hz = 1.0 / (0.013 * 3000.0);
+        asked(&mut problem, &start, |search, base, linear| {
+            let scores = search.scores(base, linear);
+            let best = scores
+                .iter()
+                .find(|s| s.start.effect.kind() == "gain_ripple");
+            let freq_hz = best.unwrap().start.values[1];
+            assert!((freq_hz - 0.173).abs() < 0.5 * resolution_hz, "{freq_hz}");
+        });
+    }
+
+    /// A pendulum that swings far, modelled by its spring at small angles: the size that a score asks for may turn it over.
+    #[test]
+    fn verify_a_start_from_which_the_plant_runs_away_is_halved() {
+        let linear = "schema = \"simgap-model/1\"\nname = \"bob\"\n\
+            [[mass]]\nname = \"bob\"\nvalue = 1.0\n\
+            [[damper]]\nname = \"c\"\nbetween = [\"bob\", \"ground\"]\ndamping = 0.03\n\
+            [[output]]\nchannel = \"q\"\nkind = \"displacement\"\nat = \"bob\"\n";
+        let spring =
+            "[[spring]]\nname = \"k\"\nbetween = [\"bob\", \"ground\"]\nstiffness = 37.0\n";
+        let far = "[[pendulum]]\nat = \"bob\"\nvalue = 37.0\n";
+        let truth = problem(&format!("{linear}{far}"), 0.01, vec![], vec![0.0; 580]);
+        let simulator = Simulator::new(&truth.model, &[], 4).unwrap();
+        let seen = simulator.predict(&truth.runs[0], &[1.6, 0.0]).unwrap();
+        let mut problem = problem(&format!("{linear}{spring}"), 0.01, vec![], seen[0].clone());
+        let start = Start {
+            effects: vec![],
+            nominal: vec![],
+            initial: vec![vec![1.6, 0.0]],
+        };
+        let at = Location::Between(["bob".into(), "ground".into()]);
+        let cubic = Placed::new(find("cubic_stiffness").unwrap(), at, vec![-67.0]);
+        asked(&mut problem, &start, |search, base, linear| {
+            let away = add(&start, cubic);
+            let found = search.fit_steps(&[away], linear, search.options.most_steps);
+            let better = found[0].log_posterior() - base.log_posterior();
+            let stiffness = found[0].effects()[0].values[0];
+            assert!(
+                better > 3.0 && (-7.0..-4.0).contains(&stiffness),
+                "{better} {stiffness}"
+            );
+        });
+    }
+}
