@@ -44,10 +44,16 @@ pub(crate) fn verdict(
     let named: Vec<NamedEffect> = decision
         .order()
         .into_iter()
-        .map(|i| {
+        .enumerate()
+        .map(|(place, i)| {
             let effect = &decision.effects[i];
             let intervals = fitted.and_then(|fit| intervals_of(fit, &effect.placed));
-            self::named(effect, own, intervals.unwrap_or_default(), units)
+            // The gap is that of the leading effect, of another what is left beside it.
+            let share = match place {
+                0 => own,
+                _ => own.min(1.0 - effect.other),
+            };
+            self::named(effect, share, intervals.unwrap_or_default(), units)
         })
         .collect();
     let (effects, leading) = match is_unknown {

@@ -17,6 +17,7 @@ use simgap_estimate::EstimateError;
 use crate::asked::Asked;
 use crate::candidate_model::{CandidateModel, INDISTINGUISHABLE, is_nominal, name, rank, remove};
 use crate::motion;
+use crate::other::other_of_one;
 use crate::search::Search;
 use crate::shapley::shapley_values;
 
@@ -45,6 +46,8 @@ pub struct EffectPosterior {
     pub closes: f64,
     /// Share of the motion that it explains, mean square: its Shapley value among the laws of the set.
     pub explains: f64,
+    /// Probability that what it explains beside the others has a cause outside the catalogue.
+    pub other: f64,
     /// What cannot be told from it, likeliest first.
     pub rivals: Vec<Rival>,
     /// What is the same thing by another name on this plant, whatever the data.
@@ -182,6 +185,8 @@ struct Share {
     closes: f64,
     /// [`EffectPosterior::explains`].
     explains: f64,
+    /// [`EffectPosterior::other`].
+    other: f64,
 }
 
 fn share(
@@ -195,6 +200,7 @@ fn share(
         worth: best.log_posterior() - without.log_posterior(),
         closes: search.closes(best, &without),
         explains,
+        other: other_of_one(search, best, &without),
     })
 }
 
@@ -249,6 +255,7 @@ fn effect(
         worth: share.worth,
         closes: share.closes,
         explains: share.explains,
+        other: share.other,
         rivals,
         equivalents: same,
     }

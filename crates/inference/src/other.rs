@@ -74,7 +74,7 @@ pub fn other(
     };
     let relevant = RELEVANT_SHARE.powi(2);
     let own = left.powi(2) + relevant;
-    let mut log_odds = (PRIOR / (1.0 - PRIOR)).ln() + 0.5 * ANY_CAUSE * (own / relevant).ln();
+    let mut log_odds = of_any_cause(left);
     if let Some(law) = &law {
         let of_law = law.left.powi(2) + relevant;
         log_odds += 0.5 * FOUND_LAW * (own / of_law).ln().max(0.0);
@@ -90,6 +90,28 @@ pub fn other(
         left,
         law,
     })
+}
+
+/// The first two terms of (1).
+fn of_any_cause(left: f64) -> f64 {
+    let relevant = RELEVANT_SHARE.powi(2);
+    (PRIOR / (1.0 - PRIOR)).ln() + 0.5 * ANY_CAUSE * (left.powi(2) / relevant).ln_1p()
+}
+
+/// The probability that what an effect explains beside others has a cause of any kind outside the catalogue, by (1) with what the others
+/// leave as the gap: an effect that leaves much of that follows it, and may not be it.
+pub(crate) fn other_of_one(
+    search: &Search<'_>,
+    with: &CandidateModel,
+    without: &CandidateModel,
+) -> f64 {
+    let gap = Gap {
+        square: without.fit.variance.clone(),
+        noise: search.noise_of(with),
+        std: search.problem.output_std(),
+    };
+    let left = gap.left(&with.fit.variance).min(1.0);
+    1.0 / (1.0 + (-of_any_cause(left)).exp())
 }
 
 /// Whether values that agree are those of what closes the gap: the set without these effects leaves a share of it that counts.
