@@ -23,6 +23,8 @@ pub fn fit_initial_states(
     weights: &FitOptions,
 ) -> Result<Fit, EstimateError> {
     let mut fixed = problem.with_runs(problem.runs.clone());
+    // How a record begins is told by the record alone.
+    fixed.state_std.clear();
     let of_file = std::mem::take(&mut fixed.given);
     let all = of_file.iter().chain(effects).cloned();
     let (own, given): (Vec<Placed>, Vec<Placed>) = all.partition(|p| !p.own_places().is_empty());
@@ -49,14 +51,12 @@ pub fn fit_initial_states(
             best = better(start, best);
         }
         best = better(led(&fixed, initial.clone(), weights), best);
+        let reach = fixed.state_std_of(&best)?;
         for (run, state) in initial.iter().enumerate() {
             if is_astray(&fixed, &best.discrepancy[run]) {
+                let alone = fixed.with_runs(vec![fixed.runs[run].clone()]);
                 let mut states = best.estimate.initial.clone();
-                states[run] = beside(
-                    &fixed.with_runs(vec![fixed.runs[run].clone()]),
-                    state,
-                    weights,
-                );
+                states[run] = beside(&alone, (state, &reach), weights);
                 best = better(Ok(states), best);
             }
         }
@@ -128,11 +128,11 @@ fn best_fit(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
 }
 
 /// The initial state of the only run that is best fitted from the best of many beside a measured one.
-fn beside(alone: &Problem, state: &[f64], weights: &FitOptions) -> Vec<f64> {
-    let states = scattered(alone, state).unwrap_or_default().into_iter();
+fn beside(alone: &Problem, measured: (&[f64], &[f64]), weights: &FitOptions) -> Vec<f64> {
+    let states = scattered(alone, measured).unwrap_or_default().into_iter();
     let fits = states.filter_map(|state| states_from(alone, vec![state], weights).ok());
     let found = best_fit(fits).and_then(|fit| fit.estimate.initial.into_iter().next());
-    found.unwrap_or_else(|| state.to_vec())
+    found.unwrap_or_else(|| measured.0.to_vec())
 }
 
 /// Whether motions that begin alike may part: then the objective of an initial state has many valleys.

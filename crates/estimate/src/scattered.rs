@@ -24,20 +24,22 @@ pub(crate) fn is_astray(problem: &Problem, discrepancy: &[Vec<f64>]) -> bool {
     channels.any(|(left, std)| rms_about_mean(|| left.iter()) > ASTRAY * std)
 }
 
-/// The best of many states about one, with which the only run of a problem begins; none where it is not known how far the motion
-/// goes ([`Problem::state_std`]).
+/// The best of many states about one, with which the only run of a problem begins, where the motion goes as far as `reach`.
 ///
 /// # Errors
 /// [`EstimateError`] when the model cannot be propagated.
-pub(crate) fn scattered(alone: &Problem, state: &[f64]) -> Result<Vec<Vec<f64>>, EstimateError> {
-    let Some(run) = alone.runs.first().filter(|_| !alone.state_std.is_empty()) else {
+pub(crate) fn scattered(
+    alone: &Problem,
+    (state, reach): (&[f64], &[f64]),
+) -> Result<Vec<Vec<f64>>, EstimateError> {
+    let Some(run) = alone.runs.first() else {
         return Ok(vec![]);
     };
     let simulator: Arc<Simulator> = Arc::new(alone.simulator(&[], 0)?);
     let about = |number: usize| -> Vec<f64> {
-        let entries = state.iter().zip(&alone.state_std).enumerate();
-        let moved = |(k, (value, std)): (usize, (&f64, &f64))| {
-            value + NEAR * std * (2.0 * halton(number, k) - 1.0)
+        let entries = state.iter().zip(reach).enumerate();
+        let moved = |(k, (value, reach)): (usize, (&f64, &f64))| {
+            value + NEAR * reach * (2.0 * halton(number, k) - 1.0)
         };
         entries.map(moved).collect()
     };
@@ -135,9 +137,7 @@ mod tests {
             ..run.clone()
         }];
         assert!(is_astray(&problem, &[left]));
-        assert!(scattered(&problem, &measured).unwrap().is_empty());
-        problem.state_std = vec![3.2, 9.0];
-        let found = scattered(&problem, &measured).unwrap();
+        let found = scattered(&problem, (&measured, &[3.2, 9.0])).unwrap();
         assert_eq!(found.len(), FITTED);
         let best = &found[0];
         assert!(apart(best) < ASTRAY, "{best:?} {}", apart(best));
