@@ -51,7 +51,7 @@ pub fn fit_initial_states(
             best = better(start, best);
         }
         best = better(led(&fixed, initial.clone(), weights), best);
-        let reach = fixed.state_std_of(&best)?;
+        let reach = fixed.state_std_of(&best.estimate.nominal, &best.estimate.initial)?;
         for (run, state) in initial.iter().enumerate() {
             if is_astray(&fixed, &best.discrepancy[run]) {
                 let alone = fixed.with_runs(vec![fixed.runs[run].clone()]);

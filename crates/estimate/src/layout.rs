@@ -239,15 +239,9 @@ impl Layout {
         } else {
             (f64::NEG_INFINITY, f64::INFINITY)
         };
-        self.push(
-            if size > 0.0 && size.is_finite() {
-                size
-            } else {
-                1.0
-            },
-            std,
-            [parameter.lower.max(least), parameter.upper.min(most)],
-        );
+        let is_scale = size > 0.0 && size.is_finite();
+        let bounds = [parameter.lower.max(least), parameter.upper.min(most)];
+        self.push(if is_scale { size } else { 1.0 }, std, bounds);
         if let Some(mean) = self.prior_mean.last_mut() {
             *mean = neutral;
         }

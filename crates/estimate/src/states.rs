@@ -1,8 +1,9 @@
 //! Initial states: a first guess, their typical sizes and their prior.
 
+use simgap_effects::Placed;
 use simgap_model::{Form, Node, OutputKind};
 
-use crate::{EstimateError, Fit, Problem};
+use crate::{EstimateError, Problem};
 
 impl Problem {
     /// First guess of the initial state of each run, from the measured displacements and
@@ -38,16 +39,20 @@ impl Problem {
             .collect()
     }
 
-    /// How far the prior of an initial state reaches: a record begins somewhere within the motion, as far as a fit predicts it, or as
-    /// a typical size where that does not move.
+    /// How far the prior of an initial state reaches: a record begins somewhere within the motion, as far as the model with these nominal parameters
+    /// and initial states predicts it, or a typical size where that does not move.
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
-    pub fn state_std_of(&self, fit: &Fit) -> Result<Vec<f64>, EstimateError> {
+    pub fn state_std_of(
+        &self,
+        nominal: &[Placed],
+        initial: &[Vec<f64>],
+    ) -> Result<Vec<f64>, EstimateError> {
         let mut std = state_scale(self);
-        for (r, run) in self.runs.iter().enumerate() {
-            let simulator = self.simulator(&fit.estimate.nominal, r)?;
-            let largest = simulator.largest_state(run, &fit.estimate.initial[r])?;
+        for (r, (run, state)) in self.runs.iter().zip(initial).enumerate() {
+            let simulator = self.simulator(nominal, r)?;
+            let largest = simulator.largest_state(run, state)?;
             for (std, largest) in std.iter_mut().zip(largest) {
                 if largest.is_finite() {
                     *std = std.max(largest);

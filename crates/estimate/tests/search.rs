@@ -120,7 +120,7 @@ fn verify_the_prior_of_a_state_is_as_wide_as_the_motion_goes() {
     let mut problem = problem(&model, runs[0].clone());
     problem.runs.push(runs[1].clone());
     let fit = fit_initial_states(&problem, &[], &strict()).unwrap();
-    let std = problem.state_std_of(&fit).unwrap();
+    let std = problem.state_std_of(&[], &fit.estimate.initial).unwrap();
     let (time_s, a) = (2.99_f64, 1.5);
     assert!(
         (std[0] / (0.5 * a * time_s * time_s) - 1.0).abs() < 1e-6,
@@ -138,7 +138,7 @@ fn verify_a_state_that_nothing_shows_is_drawn_to_the_mean_of_its_prior() {
     let far = start(vec![], vec![], &[5000.0, 0.0]);
     let free = fit(&problem, &far, &strict()).unwrap();
     assert_eq!(free.estimate.initial[0][0], 5000.0);
-    problem.state_std = problem.state_std_of(&free).unwrap();
+    problem.state_std = problem.state_std_of(&[], &free.estimate.initial).unwrap();
     problem.state_std[0] = 7.0;
     let held = fit(&problem, &far, &strict()).unwrap();
     assert!(

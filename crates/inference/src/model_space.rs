@@ -66,7 +66,8 @@ impl ModelSpace {
         });
         Ok(ModelSpace {
             candidates: sized.collect::<Result<_, EstimateError>>()?,
-            state_std: problem.state_std_of(baseline)?,
+            state_std: problem
+                .state_std_of(&baseline.estimate.nominal, &baseline.estimate.initial)?,
         })
     }
 
