@@ -51,12 +51,16 @@ pub fn fit_initial_states(
             best = better(start, best);
         }
         best = better(led(&fixed, initial.clone(), weights), best);
+        if !best.discrepancy.iter().any(|left| is_astray(&fixed, left)) {
+            return Ok(best);
+        }
         let reach = fixed.state_std_of(&best.estimate.nominal, &best.estimate.initial)?;
         for (run, state) in initial.iter().enumerate() {
             if is_astray(&fixed, &best.discrepancy[run]) {
                 let alone = fixed.with_runs(vec![fixed.runs[run].clone()]);
+                let beside = scattered(&alone, (state, &reach)).unwrap_or_default();
                 let mut states = best.estimate.initial.clone();
-                states[run] = beside(&alone, (state, &reach), weights);
+                states[run] = best_from(&alone, beside, state, weights);
                 best = better(Ok(states), best);
             }
         }
@@ -108,10 +112,18 @@ pub fn fit_initial_states_from(
 /// fits from all over a period.
 fn at_its_place(alone: &Problem, state: &[f64], weights: &FitOptions) -> Vec<f64> {
     let states = drift::places(alone, alone.given.iter(), state.to_vec());
-    let fits = states
-        .into_iter()
-        // A place that cannot be simulated from is not the right one.
-        .filter_map(|state| states_from(alone, vec![state], weights).ok());
+    best_from(alone, states, state, weights)
+}
+
+/// The initial state of the only run that is best fitted from one of several; `state` where none can be simulated from.
+fn best_from(
+    alone: &Problem,
+    states: Vec<Vec<f64>>,
+    state: &[f64],
+    weights: &FitOptions,
+) -> Vec<f64> {
+    let fits = states.into_iter();
+    let fits = fits.filter_map(|state| states_from(alone, vec![state], weights).ok());
     let found = best_fit(fits).and_then(|fit| fit.estimate.initial.into_iter().next());
     found.unwrap_or_else(|| state.to_vec())
 }
@@ -125,14 +137,6 @@ fn best_fit(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
             best
         }
     })
-}
-
-/// The initial state of the only run that is best fitted from the best of many beside a measured one.
-fn beside(alone: &Problem, measured: (&[f64], &[f64]), weights: &FitOptions) -> Vec<f64> {
-    let states = scattered(alone, measured).unwrap_or_default().into_iter();
-    let fits = states.filter_map(|state| states_from(alone, vec![state], weights).ok());
-    let found = best_fit(fits).and_then(|fit| fit.estimate.initial.into_iter().next());
-    found.unwrap_or_else(|| measured.0.to_vec())
 }
 
 /// Whether motions that begin alike may part: then the objective of an initial state has many valleys.

@@ -109,7 +109,7 @@ pub use layout::{Owner, Start};
 pub use merit::misfit;
 pub use outright::score_outright;
 pub use problem::{FitOptions, Problem};
-pub use scattered::halton;
+pub use scattered::{ASTRAY, halton};
 pub use score::{Score, score, score_in_place_of, score_shapes};
 pub use spread::spread;
 pub use summary::{EstimatedEffect, EstimatedParameter, FitSummary};

@@ -15,8 +15,9 @@ const TRIED: usize = 256;
 const NEAR: f64 = 0.01;
 /// Of them the best, which are fitted.
 const FITTED: usize = 3;
-/// Share of the motion that is left, rms, from which a prediction is led astray.
-const ASTRAY: f64 = 0.1;
+/// Share of the motion that is left, rms, from which on a fit may be in a valley beside the right one: a lap ahead or behind leaves as much as
+/// the motion itself, even if it is lost in a hundredth of the records.
+pub const ASTRAY: f64 = 0.1;
 
 /// Whether what is left of a run is so much of some output that the two may have parted.
 pub(crate) fn is_astray(problem: &Problem, discrepancy: &[Vec<f64>]) -> bool {
@@ -63,20 +64,13 @@ pub(crate) fn scattered(
         });
         squares.sum()
     };
-    let mut tried: Vec<(f64, Vec<f64>)> = alone
-        .predict_all(&jobs)
-        .into_iter()
-        .zip(&states)
-        // A state that cannot be simulated from is not the right one.
-        .filter_map(|(predicted, state)| Some((left(&predicted.ok()?), state.clone())))
-        .filter(|(left, _)| left.is_finite())
-        .collect();
+    let predicted = alone.predict_all(&jobs).into_iter().zip(&states);
+    // A state that cannot be simulated from is not the right one.
+    let tried = predicted.filter_map(|(predicted, state)| Some((left(&predicted.ok()?), state)));
+    let mut tried: Vec<(f64, &Vec<f64>)> = tried.filter(|(left, _)| left.is_finite()).collect();
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(tried
-        .into_iter()
-        .take(FITTED)
-        .map(|(_, state)| state)
-        .collect())
+    let best = tried.into_iter().take(FITTED);
+    Ok(best.map(|(_, state)| state.clone()).collect())
 }
 
 /// A coordinate of a point of Halton's sequence, evenly spread over 0 to 1: the digits of its number in a prime base, mirrored at the

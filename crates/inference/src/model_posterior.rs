@@ -94,10 +94,13 @@ pub fn model_posterior(
 ) -> Result<ModelPosterior, EstimateError> {
     let asked = search.ask(pool)?;
     let shares = match asked.best() {
-        Some(best) => (0..best.effects().len())
-            .zip(explained(search, &asked, best)?)
-            .map(|(i, explains)| share(search, &asked, best, (i, explains)))
-            .collect::<Result<Vec<_>, EstimateError>>()?,
+        Some(best) => {
+            // Simulated in half steps: once for all effects.
+            let noise = search.noise_of(best);
+            let effects = explained(search, &asked, best)?.into_iter().enumerate();
+            let shares = effects.map(|effect| share(search, &asked, (best, &noise), effect));
+            shares.collect::<Result<Vec<_>, EstimateError>>()?
+        }
         None => vec![],
     };
     let (sets, log_posteriors) = asked.kept();
@@ -192,7 +195,7 @@ struct Share {
 fn share(
     search: &Search<'_>,
     asked: &Asked,
-    best: &CandidateModel,
+    (best, noise): (&CandidateModel, &[f64]),
     (index, explains): (usize, f64),
 ) -> Result<Share, EstimateError> {
     let without = asked.part(search, best, &all_but(best, index))?;
@@ -200,7 +203,7 @@ fn share(
         worth: best.log_posterior() - without.log_posterior(),
         closes: search.closes(best, &without),
         explains,
-        other: other_of_one(search, best, &without),
+        other: other_of_one(search, (best, noise), &without),
     })
 }
 

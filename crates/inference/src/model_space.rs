@@ -39,10 +39,14 @@ impl ModelSpace {
         let is_withheld = |kind: &str| withheld.iter().any(|known| known == kind);
         let candidates = problem.candidates(|_| true).into_iter();
         let candidates = candidates.filter(|candidate| !is_withheld(candidate.effect.kind()));
-        ModelSpace::of(problem, baseline, candidates)
+        Ok(ModelSpace {
+            state_std: problem
+                .state_std_of(&baseline.estimate.nominal, &baseline.estimate.initial)?,
+            ..ModelSpace::of(problem, baseline, candidates)?
+        })
     }
 
-    /// These candidates, with the sizes that `baseline` tells.
+    /// These candidates, with the sizes that `baseline` tells; initial states have the prior of the problem.
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
@@ -66,8 +70,7 @@ impl ModelSpace {
         });
         Ok(ModelSpace {
             candidates: sized.collect::<Result<_, EstimateError>>()?,
-            state_std: problem
-                .state_std_of(&baseline.estimate.nominal, &baseline.estimate.initial)?,
+            state_std: problem.state_std.clone(),
         })
     }
 

@@ -86,10 +86,14 @@ pub fn other(
     log_odds += coincidence.as_ref().map_or(0.0, |found| found.log_odds);
     Ok(Other {
         coincidence,
-        probability: 1.0 / (1.0 + (-log_odds).exp()),
+        probability: probability_of(log_odds),
         left,
         law,
     })
+}
+
+fn probability_of(log_odds: f64) -> f64 {
+    1.0 / (1.0 + (-log_odds).exp())
 }
 
 /// The first two terms of (1).
@@ -102,16 +106,16 @@ fn of_any_cause(left: f64) -> f64 {
 /// leave as the gap: an effect that leaves much of that follows it, and may not be it.
 pub(crate) fn other_of_one(
     search: &Search<'_>,
-    with: &CandidateModel,
+    (with, noise): (&CandidateModel, &[f64]),
     without: &CandidateModel,
 ) -> f64 {
     let gap = Gap {
         square: without.fit.variance.clone(),
-        noise: search.noise_of(with),
+        noise: noise.to_vec(),
         std: search.problem.output_std(),
     };
     let left = gap.left(&with.fit.variance).min(1.0);
-    1.0 / (1.0 + (-of_any_cause(left)).exp())
+    probability_of(of_any_cause(left))
 }
 
 /// Whether values that agree are those of what closes the gap: the set without these effects leaves a share of it that counts.

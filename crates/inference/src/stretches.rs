@@ -13,7 +13,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{
-    EstimateError, Fit, FitOptions, Problem, Start, fit, fit_initial_states_from,
+    ASTRAY, EstimateError, Fit, FitOptions, Problem, Start, fit, fit_initial_states_from,
 };
 use simgap_model::Location;
 
@@ -24,9 +24,6 @@ const MOST_STRETCHES: usize = 40;
 const JOINED: usize = 4;
 /// Steps of these fits: the valley is narrow.
 const STEPS: usize = 80;
-/// Share of the motion, rms, from which on a set may be in a valley beside the right one: a lap ahead or behind leaves as much as the motion
-/// itself, even if it is lost in a hundredth of the records.
-const ASTRAY: f64 = 0.1;
 
 /// A set without effects fitted to whole records or, where these leave so much that the right valley may be another, to stretches of them
 /// first, whichever leaves less.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
-use simgap_effects::{LINES, SiteScale};
+use simgap_effects::SiteScale;
 use simgap_estimate::{
     Base, Candidate, EstimateError, FitOptions, Score, Start, linearise_at, score,
 };
@@ -24,13 +24,6 @@ const WINDING: usize = 4;
 const HALVINGS: usize = 5;
 /// Sets that are finished of more: those of the best starts, and those of the others that are the best once they are fitted roughly.
 pub(crate) const FINISHED: [usize; 2] = [4, 8];
-
-/// What a set leaves at a place.
-struct Left {
-    lines_hz: [f64; LINES],
-    carriers_hz: [f64; LINES],
-    late_s: f64,
-}
 
 impl Search<'_> {
     /// Every set worth a fit with one more effect than `base`, best first; none where it has been asked before.
@@ -142,8 +135,8 @@ impl Search<'_> {
     /// Scores of all candidates that are not in the set yet, shapes included, best first.
     fn scores(&self, base: &CandidateModel, linear: &Base<'_>) -> Vec<Score> {
         // Lines and carriers that the set leaves, and by how much signals come late: where clocks, hidden modes and long delays start.
-        let mut left: Vec<(Location, Left)> = vec![];
-        for (candidate, _) in &self.space.candidates {
+        let mut left: Vec<(Location, SiteScale)> = vec![];
+        for (candidate, scale) in &self.space.candidates {
             let at = &candidate.at;
             if left.iter().all(|(known, _)| known != at) {
                 // Of all channels together: the same at every input.
@@ -151,23 +144,16 @@ impl Search<'_> {
                 let known = left.iter().find(|(of, _)| is_input(of) && is_input(at));
                 let late_s =
                     known.map_or_else(|| self.problem.late(&base.fit, at), |(_, left)| left.late_s);
-                let left_at = Left {
+                let scale = SiteScale {
                     lines_hz: self.problem.lines_left(&base.fit, at),
                     carriers_hz: self.problem.carriers_left(&base.fit, at),
                     late_s,
+                    ..*scale
                 };
-                left.push((at.clone(), left_at));
+                left.push((at.clone(), scale));
             }
         }
-        let sized = |candidate: &Candidate, scale: &SiteScale| {
-            let left = left.iter().find(|(at, _)| *at == candidate.at);
-            left.map_or(*scale, |(_, left)| SiteScale {
-                lines_hz: left.lines_hz,
-                carriers_hz: left.carriers_hz,
-                late_s: left.late_s,
-                ..*scale
-            })
-        };
+        let sized = |at: &Location| left.iter().find(|(known, _)| known == at);
         let scored = self
             .space
             .candidates
@@ -176,7 +162,10 @@ impl Search<'_> {
             .map(|(candidate, scale)| match prior_score(base, candidate) {
                 // Already adjustable under its narrow prior: its score starts from there.
                 Some(score) => vec![score],
-                None => score(linear, candidate, &sized(candidate, scale)).unwrap_or_default(),
+                None => {
+                    let scale = sized(&candidate.at).map_or(scale, |(_, scale)| scale);
+                    score(linear, candidate, scale).unwrap_or_default()
+                }
             })
             .collect::<Vec<_>>();
         let mut scores: Vec<Score> = scored.into_iter().flatten().collect();

@@ -61,6 +61,7 @@ impl Search<'_> {
             found.extend(wide.fit_joint(recalibrated, &linear));
         }
         if !self.is_spent() {
+            // By sensitivities of their own: those without friction lead elsewhere.
             let shared = wide.shared(recalibrated);
             let fitted = self.try_each(&shared, |start| wide.fit(start).ok());
             found.extend(fitted.into_iter().flatten());
