@@ -71,11 +71,13 @@ pub(crate) fn site_scale(
     } else {
         measured_force
     });
+    let [low, high] = range(&path.displacement);
     Ok(SiteScale {
         signal: positive(signal),
         time_step_s: bench.time_step_s,
         duration_s: bench.len as f64 * bench.time_step_s,
-        displacement_range_m: range(&path.displacement),
+        displacement_range_m: [low, high],
+        travel_m: high - low,
         signal_range: match (channel, input) {
             (Some(i), _) => range(&outputs[i]),
             (None, Some(i)) => range(&run.inputs[i]),

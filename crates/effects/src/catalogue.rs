@@ -27,6 +27,7 @@ static CATALOGUE: &[&dyn Effect] = &[
     &backlash::Backlash,
     &bilinear_stiffness::BilinearStiffness,
     &end_stop::EndStop,
+    &force_limit::ForceLimit,
     &harmonic_force::HarmonicForce,
     &position_periodic_force::PositionPeriodicForce,
     &time_varying_stiffness::TimeVaryingStiffness,

@@ -20,6 +20,8 @@ pub struct SiteScale {
     pub duration_s: f64,
     /// Smallest and largest displacement across the site, m.
     pub displacement_range_m: [f64; 2],
+    /// Largest travel across the site within one record, m: records of an axis may lie anywhere along it.
+    pub travel_m: f64,
     /// Smallest and largest value of the channel as measured, in model units (input and output sites).
     pub signal_range: [f64; 2],
     /// Step of the values of the channel, in model units; zero where there is none to be seen.
@@ -61,6 +63,7 @@ impl SiteScale {
             time_step_s: 1e-3,
             duration_s: 1.0,
             displacement_range_m: [-1.4 * displacement_m, 1.4 * displacement_m],
+            travel_m: 2.8 * displacement_m,
             signal_range: [-1.4, 1.4],
             signal_step: 0.0,
             signal_level: 0.0,

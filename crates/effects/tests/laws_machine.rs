@@ -126,6 +126,54 @@ fn verify_backlash_takes_the_play_off_the_springs_of_the_model() {
     }
 }
 
+/// The limited force against its definition, and against the describing function of a saturation.
+#[test]
+fn verify_a_limited_force_is_that_of_spring_and_damper_up_to_its_limits() {
+    let (k, c, upper, lower) = (9000.0, 20.0, 45.0, 18.0);
+    let at = between("load", "carriage");
+    let law = member_law("force_limit", &[upper, lower], &model(), &at);
+    let carried = |d: f64, v: f64| k * d + c * v + force(law.as_ref(), d, v);
+    for (d, v, needed) in [
+        (0.0, 0.0, 0.0),
+        (0.0049, 0.0, k * 0.0049),
+        (0.0051, 0.0, upper),
+        (-0.0019, 0.0, -k * 0.0019),
+        (-0.5, 0.0, -lower),
+        (0.0, 2.0, c * 2.0),
+        (0.003, 2.0, upper),
+        (0.006, -1.0, k * 0.006 - c),
+    ] {
+        assert_near(carried(d, v), needed, ROUNDING * k);
+    }
+    assert!(!law.remembers() && law.dry_level(0.0).is_none());
+    let limit = 45.0;
+    let mut undamped = model();
+    undamped.dampers.clear();
+    let law = member_law("force_limit", &[limit, limit], &undamped, &at);
+    for amplitude in [0.0051, 0.01, 0.3] {
+        // What a spring loses to play of L/k on either side is what it keeps under a limit L.
+        let needed = -k * share_beyond_play(limit / k, amplitude);
+        assert_near(
+            equivalent_stiffness(law.as_ref(), amplitude),
+            needed,
+            QUADRATURE * k,
+        );
+    }
+}
+
+#[test]
+fn verify_a_slack_spring_grows_into_a_limit() {
+    let larger = effect("force_limit");
+    let scale = SiteScale {
+        stiffness_n_per_m: 9000.0,
+        ..scale()
+    };
+    let grown =
+        |change: f64| larger.grown_from("bilinear_stiffness", &[change, 0.005, 0.002], &scale);
+    assert_eq!(grown(-8500.0), [vec![45.0, 18.0]]);
+    assert!(grown(500.0).is_empty());
+}
+
 #[test]
 fn verify_backlash_follows_the_recalibrated_model() {
     let mut model = model();

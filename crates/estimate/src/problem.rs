@@ -5,7 +5,7 @@ use std::sync::Arc;
 use simgap_effects::{
     Action, Effect, Family, Placed, Prior, Sampled, SiteScale, catalogue_of, own_laws, places_of,
 };
-use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model};
+use simgap_model::{DEFAULT_UNCERTAINTY, Location, Model, OutputKind};
 use simgap_simulate::{ExternalPlant, Job, Run, Simulator, predict_all, substeps_for};
 
 use crate::candidate::Candidate;
@@ -299,7 +299,8 @@ impl Problem {
     }
 
     /// Standard deviation of each output over all runs, model units: what discrepancies are compared with, and filtered like
-    /// them.
+    /// them. About the mean of each run where nothing of the model holds the position that it shows: where an axis was left before a
+    /// record, and what its encoder had counted, is no motion.
     #[must_use]
     pub fn output_std(&self) -> Vec<f64> {
         let of_channel = |channel: usize| {
@@ -315,7 +316,7 @@ impl Problem {
                     values.split_off(order.min(values.len()))
                 })
                 .collect();
-            rms_about_mean(|| filtered.iter().flatten())
+            self.rms_of_motion(channel, filtered.iter().map(Vec::as_slice))
         };
         (0..self.model.outputs.len()).map(of_channel).collect()
     }
@@ -330,11 +331,26 @@ impl Problem {
     }
 
     fn motion_std_of(&self, channel: usize) -> f64 {
-        rms_about_mean(|| self.measured(channel).flatten())
+        self.rms_of_motion(channel, self.measured(channel))
+    }
+
+    /// Rms of what an output shows in each run, about the mean of all, or of each where it may begin anywhere.
+    fn rms_of_motion<'a>(
+        &self,
+        channel: usize,
+        runs: impl Iterator<Item = &'a [f64]> + Clone,
+    ) -> f64 {
+        let output = &self.model.outputs[channel];
+        let at = output.at.clone().map(Location::Mass);
+        let is_position = output.kind == OutputKind::Displacement;
+        if is_position && at.is_some_and(|at| self.model.is_level_free(&at)) {
+            return rms_about_means(runs);
+        }
+        rms_about_mean(|| runs.clone().flatten())
     }
 
     /// The values of a channel, run by run.
-    pub(crate) fn measured(&self, channel: usize) -> impl Iterator<Item = &[f64]> {
+    pub(crate) fn measured(&self, channel: usize) -> impl Iterator<Item = &[f64]> + Clone {
         let runs = self.runs.iter();
         runs.filter_map(move |run| run.measured[channel].as_deref())
     }
@@ -368,6 +384,17 @@ fn lives_in_single_samples(effect: &dyn Effect) -> bool {
         _ => false,
     };
     starts.first().is_some_and(acts)
+}
+
+/// Rms of some signals about the mean of each.
+pub(crate) fn rms_about_means<'a>(signals: impl Iterator<Item = &'a [f64]>) -> f64 {
+    let (mut count, mut square) = (0.0_f64, 0.0);
+    for signal in signals {
+        let len = signal.len() as f64;
+        count += len;
+        square += len * rms_about_mean(|| signal.iter()).powi(2);
+    }
+    (square / count.max(1.0)).sqrt()
 }
 
 /// Root mean square about the mean.

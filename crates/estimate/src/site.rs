@@ -9,7 +9,7 @@ use simgap_signal::spectrum::spectrum;
 use simgap_signal::{Trend, Window};
 use simgap_simulate::{MemberPath, Run};
 
-use crate::problem::rms_about_mean;
+use crate::problem::{rms_about_mean, rms_about_means};
 use crate::products::dot;
 use crate::{EstimateError, Fit, Problem};
 
@@ -56,7 +56,10 @@ impl Problem {
             (None, Some(i)) => (rms_about_mean(|| sent(i)), range(sent(i).copied())),
             (None, None) => (0.0, [-1.0, 1.0]),
         };
-        let displacement_m = positive(rms_about_mean(|| path.displacement.iter()));
+        let displacement_m = positive(match self.model.is_level_free(at) {
+            true => rms_about_means(runs_of(&path.displacement, &self.runs)),
+            false => rms_about_mean(|| path.displacement.iter()),
+        });
         let velocity_m_per_s = positive(rms_about_mean(|| path.velocity.iter()));
         let force_n = positive(inertia);
         let longest = self.runs.iter().map(Run::duration_s).fold(0.0, f64::max);
@@ -73,6 +76,10 @@ impl Problem {
             time_step_s: step,
             duration_s: positive(longest),
             displacement_range_m: range(path.displacement.iter().copied()),
+            travel_m: runs_of(&path.displacement, &self.runs)
+                .map(|own| range(own.iter().copied()))
+                .map(|[low, high]| high - low)
+                .fold(0.0, f64::max),
             signal_range,
             signal_step,
             signal_level,
@@ -168,6 +175,16 @@ impl Problem {
             .map(|(_, std)| std);
         forces.fold(0.0, f64::max)
     }
+}
+
+/// What belongs to each run of a signal over all of them.
+fn runs_of<'a>(signal: &'a [f64], runs: &'a [Run]) -> impl Iterator<Item = &'a [f64]> {
+    let mut rest = signal;
+    runs.iter().map(move |run| {
+        let (own, after) = rest.split_at(run.len.min(rest.len()));
+        rest = after;
+        own
+    })
 }
 
 fn product(a: &[f64], b: &[f64]) -> Vec<f64> {

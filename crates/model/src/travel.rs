@@ -10,22 +10,10 @@ impl Model {
     /// `None` where the displacement across the place is held or seen, and for places that have none (inputs, outputs).
     #[must_use]
     pub fn unseen_travel(&self, at: &Location) -> Option<Vec<f64>> {
-        let nodes = match at {
-            Location::Between([a, b]) => [self.node(a)?, self.node(b)?],
-            Location::Mass(mass) => [self.node(mass)?, Node::Ground],
-            Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => return None,
-        };
-        // How a body that rolls is held, springs between nodes do not say.
-        if self.masses.iter().any(|mass| self.is_roll(&mass.name)) {
-            return None;
-        }
         let groups = self.groups();
-        let [a, b] = nodes.map(|node| match node {
-            Node::Dof(mass) => Some(groups[mass]),
-            Node::Ground | Node::Base(_) | Node::Point(_) | Node::Port(_) => None,
-        });
+        let [a, b] = self.groups_at(at, &groups)?;
         let moved = |group: usize, by: f64| -> Option<Vec<f64>> {
-            let is_free = !self.is_placed(&groups, group);
+            let is_free = !self.is_held(&groups, group) && !self.is_seen(&groups, group);
             let each = groups
                 .iter()
                 .map(|own| if *own == group { by } else { 0.0 });
@@ -37,6 +25,35 @@ impl Model {
                 .and_then(|a| moved(a, 1.0))
                 .or_else(|| b.and_then(|b| moved(b, -1.0))),
         }
+    }
+
+    /// Whether the displacement across a place may have any level: no spring or pendulum of the model resists it. An axis moves on from
+    /// where it was left, and its encoder counts on.
+    #[must_use]
+    pub fn is_level_free(&self, at: &Location) -> bool {
+        let groups = self.groups();
+        let Some([a, b]) = self.groups_at(at, &groups) else {
+            return false;
+        };
+        let is_free = |group: Option<usize>| group.is_some_and(|own| !self.is_held(&groups, own));
+        a != b && (is_free(a) || is_free(b))
+    }
+
+    /// The groups of the two ends of a place, none of an end that is no mass; `None` for places that stretch by no displacement, and where
+    /// bodies roll: how these are held, springs between nodes do not say.
+    fn groups_at(&self, at: &Location, groups: &[usize]) -> Option<[Option<usize>; 2]> {
+        let nodes = match at {
+            Location::Between([a, b]) => [self.node(a)?, self.node(b)?],
+            Location::Mass(mass) => [self.node(mass)?, Node::Ground],
+            Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => return None,
+        };
+        let any_rolls = self.masses.iter().any(|mass| self.is_roll(&mass.name));
+        (!any_rolls).then(|| {
+            nodes.map(|node| match node {
+                Node::Dof(mass) => Some(groups[mass]),
+                Node::Ground | Node::Base(_) | Node::Point(_) | Node::Port(_) => None,
+            })
+        })
     }
 
     /// For each mass, the first of those that springs join it to.
@@ -55,20 +72,29 @@ impl Model {
         groups
     }
 
-    /// Whether something holds the place of a group of masses or shows it.
-    fn is_placed(&self, groups: &[usize], group: usize) -> bool {
-        let within = |name: &str| match self.node(name) {
+    /// Whether a mass of a name is one of a group.
+    fn is_within(&self, name: &str, groups: &[usize], group: usize) -> bool {
+        match self.node(name) {
             Some(Node::Dof(mass)) => groups[mass] == group,
             _ => false,
-        };
+        }
+    }
+
+    /// Whether a spring or a pendulum holds the place of a group of masses.
+    fn is_held(&self, groups: &[usize], group: usize) -> bool {
+        let within = |name: &str| self.is_within(name, groups, group);
         let mut springs = self.springs.iter();
         let mut pendulums = self.pendulums.iter();
-        let mut outputs = self.outputs.iter();
         springs.any(|spring| within(&spring.between[0]) != within(&spring.between[1]))
             || pendulums.any(|pendulum| within(&pendulum.at))
-            || outputs.any(|output| {
-                output.kind == OutputKind::Displacement && output.at.as_deref().is_some_and(within)
-            })
+    }
+
+    /// Whether an output shows the place of a group of masses.
+    fn is_seen(&self, groups: &[usize], group: usize) -> bool {
+        let within = |name: &str| self.is_within(name, groups, group);
+        self.outputs.iter().any(|output| {
+            output.kind == OutputKind::Displacement && output.at.as_deref().is_some_and(within)
+        })
     }
 }
 
@@ -115,5 +141,22 @@ mod tests {
         assert_eq!(travel(other, ["load", "tool"]), Some(vec![1.0, 1.0, 0.0]));
         assert_eq!(travel(other, ["tool", "load"]), Some(vec![-1.0, -1.0, 0.0]));
         assert_eq!(travel(other, ["tool", "ground"]), None);
+    }
+
+    #[test]
+    fn verify_what_nothing_holds_has_no_level() {
+        let is_free = |more: &str, place: [&str; 2]| {
+            let model = Model::from_toml(&format!("{AXIS}{more}")).unwrap();
+            model.is_level_free(&Location::Between(place.map(String::from)))
+        };
+        let seen = "[[output]]\nchannel = \"x\"\nkind = \"displacement\"\nat = \"load\"\n";
+        assert!(is_free("", ["load", "ground"]) && is_free(seen, ["motor", "ground"]));
+        assert!(!is_free(seen, ["motor", "load"]));
+        let stop =
+            "[[spring]]\nname = \"stop\"\nbetween = [\"ground\", \"motor\"]\nstiffness = 9.0\n";
+        assert!(!is_free(stop, ["load", "ground"]));
+        let model = Model::from_toml(AXIS).unwrap();
+        assert!(model.is_level_free(&Location::Mass("load".into())));
+        assert!(!model.is_level_free(&Location::Channel("v".into())));
     }
 }

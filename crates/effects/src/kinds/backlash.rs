@@ -2,8 +2,8 @@
 
 use simgap_integrate::exact::{ForceLaw, MemberMotion};
 use simgap_integrate::lanes;
-use simgap_model::{Location, Model, Spring, same_pair};
 
+use super::members;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// Play in a spring of the model: it carries nothing until the play is used up.
@@ -28,15 +28,6 @@ impl ForceLaw for Law {
     fn force(&self, motion: MemberMotion) -> f64 {
         -self.stiffness * motion.displacement.max(-self.half_gap).min(self.half_gap)
     }
-}
-
-/// Stiffness of the springs at a place.
-fn stiffness(model: &Model, at: &Location) -> f64 {
-    let here = |spring: &&Spring| match at {
-        Location::Between(pair) => same_pair(&spring.between, pair),
-        _ => false,
-    };
-    model.springs.iter().filter(here).map(|s| s.stiffness).sum()
 }
 
 impl Effect for Backlash {
@@ -84,7 +75,7 @@ impl Effect for Backlash {
         let half_gap = 0.5 * values[0];
         Action::Member(Box::new(move |model, at| {
             Box::new(Law {
-                stiffness: stiffness(model, at),
+                stiffness: members::stiffness(model, at),
                 half_gap,
             })
         }))

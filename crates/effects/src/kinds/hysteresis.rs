@@ -24,6 +24,9 @@ const STEP: f64 = 0.25;
 /// From here on the force has levelled off.
 const LEVEL: f64 = 1.0 - 1e-10;
 
+/// Share of its level to which it has slid where a record begins in motion.
+const SLID: f64 = 0.9;
+
 struct Law {
     stiffness: f64,
     yield_displacement: f64,
@@ -218,6 +221,16 @@ impl Effect for Hysteresis {
 
     fn shrunk_to(&self, _kind: &str, values: &[f64], _: &SiteScale) -> Option<Vec<f64>> {
         Some(vec![values[0]])
+    }
+
+    /// At rest, or slid to within a tenth of its level on either side: a record begins while the machine moves as often as at rest.
+    fn own_starts(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let begun = |start: f64| {
+            let mut values = values.to_vec();
+            values[4] = start;
+            values
+        };
+        [0.0, SLID, -SLID].map(begun).to_vec()
     }
 
     fn action(&self, values: &[f64]) -> Action {

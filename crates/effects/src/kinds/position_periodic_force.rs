@@ -15,7 +15,7 @@ use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 /// F = a sin(2π d / p) + b cos(2π d / p)
 /// ```
 /// Where nothing shows at which d a record begins, a shift of all d turns a and b into each other: b is then what it was at the
-/// start of a fit, and the places at which the records begin say the rest. p is no longer than the travel.
+/// start of a fit, and the places at which the records begin say the rest. p is no longer than the travel of a record.
 ///
 /// Reference: \[Otten1997\], cogging of a linear motor.
 pub(crate) struct PositionPeriodicForce;
@@ -35,7 +35,7 @@ impl ForceLaw for Law {
     }
 }
 
-/// Periods within the range of the motion: what is not seen whole does not repeat, and is any smooth curve.
+/// Periods within the travel of a record: what is not seen whole does not repeat, and is any smooth curve.
 const FEWEST: f64 = 1.0;
 const MOST: f64 = 30.0;
 /// From one start to the next: a sixth of the periods, and at the most half a period, by which two waves part over the
@@ -45,12 +45,11 @@ const MOST_STEP: f64 = 0.5;
 /// Number of usual ones.
 const USUAL: i32 = 22;
 
-/// Small forces with so many periods over the range of the motion.
+/// Small forces with so many periods over the travel.
 fn of_periods(scale: &SiteScale, counts: impl Iterator<Item = f64>) -> Vec<Vec<f64>> {
-    let [low, high] = scale.displacement_range_m;
     let force = 0.05 * scale.force_n;
     counts
-        .map(|periods| vec![force, force, (high - low) / periods])
+        .map(|periods| vec![force, force, scale.travel_m / periods])
         .collect()
 }
 
@@ -120,8 +119,7 @@ impl Effect for PositionPeriodicForce {
     }
 
     fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
-        let [low, high] = scale.displacement_range_m;
-        FEWEST * values[2] <= high - low
+        FEWEST * values[2] <= scale.travel_m
     }
 
     fn confused_with(&self) -> &'static [(&'static str, &'static str)] {

@@ -30,6 +30,9 @@ const SHARES: [f64; 3] = [0.02, 0.15, 0.8];
 /// Damping ratio of the mass on the stiffness before sliding, to start from.
 const DAMPING: f64 = 0.1;
 
+/// Share of its level to which it has slid where a record begins in motion.
+const SLID: f64 = 0.9;
+
 struct Law {
     friction: f64,
     displacement: f64,
@@ -156,6 +159,16 @@ impl Effect for PreslidingFriction {
 
     fn left_out(&self, parameter: &str) -> Option<f64> {
         (parameter == "damping_time_s").then_some(0.0)
+    }
+
+    /// At rest, or slid to within a tenth of its level on either side: a record begins while the machine moves as often as at rest.
+    fn own_starts(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let begun = |start: f64| {
+            let mut values = values.to_vec();
+            values[3] = start;
+            values
+        };
+        [0.0, SLID, -SLID].map(begun).to_vec()
     }
 
     fn action(&self, values: &[f64]) -> Action {
