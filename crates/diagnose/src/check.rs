@@ -6,15 +6,15 @@ use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
 use simgap_inference::noise_model::{NOISE_KNOWN, accuracy, accuracy_of_steps, input_noise};
-use simgap_inference::{CandidateModel, RELEVANT_SHARE};
+use simgap_inference::{CandidateModel, LIKELIER_THAN_NOT, RELEVANT_SHARE, other_by};
 use simgap_simulate::{MemberPath, Run, substeps_for};
 
-use crate::Gap;
 use crate::excerpt::excerpts;
 use crate::gap::{Prediction, closed_if_true, gap, predict, total};
 use crate::multi_step;
 use crate::place::place_of;
 use crate::spread::spread_of_check;
+use crate::{ChannelGap, Gap};
 
 /// What is left of what the answer has to explain, rms, from which it is incomplete.
 const INCOMPLETE: f64 = 0.05;
@@ -40,14 +40,21 @@ pub(crate) struct Checked {
     pub(crate) left_of_channels: Vec<f64>,
     /// Nothing is left but noise and the accuracy of the simulation.
     pub(crate) is_complete: bool,
-    /// The corrected model predicts worse than re-estimated parameters do, or no better with the effects that are named.
-    pub(crate) is_refuted: bool,
+    /// Probability of another cause, by what the answer leaves of what it should close of these records.
+    pub(crate) other: f64,
     /// The motion at each output along the first record, with the corrected model.
     pub(crate) paths: Vec<Vec<MemberPath>>,
     /// Sample rate of the first record, Hz.
     pub(crate) sample_rate_hz: f64,
     /// What a reader must know.
     pub(crate) notes: Vec<String>,
+}
+
+impl Checked {
+    /// Whether another cause is likelier.
+    pub(crate) fn is_refuted(&self) -> bool {
+        self.other > LIKELIER_THAN_NOT
+    }
 }
 
 impl<'a> Check<'a> {
@@ -98,25 +105,55 @@ impl<'a> Check<'a> {
             ),
         };
         let of_simulation = self.accuracy(placed, &predictions[2])?;
-        let left_of_channels = left_of_channels(&gap, spread, &of_simulation);
+        // What is left of each channel above all noise, over its standard deviation.
+        let above_noise = |of: fn(&ChannelGap) -> f64| -> Vec<f64> {
+            let channels = gap.channels.iter().zip(&of_simulation);
+            channels
+                .map(|(channel, accuracy)| {
+                    let noise = NOISE_KNOWN * channel.noise_floor.powi(2)
+                        + channel.input_noise.powi(2)
+                        + spread.powi(2)
+                        + accuracy.powi(2);
+                    (of(channel).powi(2) - noise).max(0.0).sqrt()
+                })
+                .collect()
+        };
+        let left_of_channels = above_noise(|channel| channel.corrected);
         let left = total(&left_of_channels);
         let nominal = gap.nominal.max(f64::MIN_POSITIVE);
-        let is_worse = gap.corrected > gap.recalibrated.max(gap.noise_floor)
-            && gap.corrected > gap.nominal.min(gap.recalibrated) * NOISE_KNOWN;
         // What is named beside parameters is to explain what these leave, and closes some of that where a check record can show it.
-        let (share, to_explain) = match placed.iter().all(simgap_inference::is_nominal) {
-            true => (0.0, nominal),
-            false => (RELEVANT_SHARE, nominal.min(gap.recalibrated)),
-        };
+        let of_nominal = (
+            gap.nominal,
+            &predictions[0],
+            total(&above_noise(|c| c.nominal)),
+        );
+        let of_parameters = (
+            gap.recalibrated,
+            &predictions[1],
+            total(&above_noise(|c| c.recalibrated)),
+        );
+        let (share, (to_explain, without, to_close)) =
+            match placed.iter().all(simgap_inference::is_nominal) {
+                true => (0.0, of_nominal),
+                false if gap.nominal < gap.recalibrated => (RELEVANT_SHARE, of_nominal),
+                false => (RELEVANT_SHARE, of_parameters),
+            };
+        // No less than what noise is known to.
+        let to_close = to_close.max((NOISE_KNOWN - 1.0).sqrt() * gap.noise_floor);
         let is_complete = left <= INCOMPLETE * to_explain;
-        let is_tested =
-            closed_if_true(&self.problem.output_std(), &predictions[1], &predictions[2]) >= share;
-        let is_idle = share > 0.0 && is_tested && gap.corrected > (1.0 - share) * gap.recalibrated;
-        let follows = || multi_step::closes(&self.problem, known, placed, &self.plain, share);
+        let std = self.problem.output_std();
+        let is_tested = closed_if_true(&std, (without, to_close), &predictions[2]) >= share;
         let mut notes = vec![];
         // What leaves no more than noise and the accuracy of the simulation contradicts nothing.
-        let is_refuted = !is_complete && (is_worse || is_idle) && !follows()?;
-        if is_worse && !is_complete && !is_refuted {
+        let mut other = match !is_complete {
+            true => other_by(left / to_close),
+            false => 0.0,
+        };
+        if other > LIKELIER_THAN_NOT
+            && let Some(left) = multi_step::left(&self.problem, known, placed, &self.plain)?
+            && other_by(left) < other
+        {
+            other = other_by(left);
             notes.push(
                 "over a whole check record the corrected model departs from the measurement, in short stretches it follows: the motion \
                  depends on differences that no estimate resolves"
@@ -146,7 +183,7 @@ impl<'a> Check<'a> {
             is_complete,
             left: (left / nominal).min(1.0),
             left_of_channels,
-            is_refuted,
+            other,
             paths: vec![self.paths(&predictions[2])],
             predictions,
             gap,
@@ -202,18 +239,4 @@ impl<'a> Check<'a> {
             })
             .collect()
     }
-}
-
-/// What is left of each channel above all noise, over its standard deviation.
-fn left_of_channels(gap: &Gap, spread: f64, accuracy: &[f64]) -> Vec<f64> {
-    let channels = gap.channels.iter().zip(accuracy);
-    channels
-        .map(|(channel, accuracy)| {
-            let noise = NOISE_KNOWN * channel.noise_floor.powi(2)
-                + channel.input_noise.powi(2)
-                + spread.powi(2)
-                + accuracy.powi(2);
-            (channel.corrected.powi(2) - noise).max(0.0).sqrt()
-        })
-        .collect()
 }

@@ -3,15 +3,12 @@
 use simgap_effects::Placed;
 use simgap_estimate::Start;
 use simgap_inference::{
-    CandidateModel, EffectPosterior, Gap, ModelPosterior, Other, RELEVANT_SHARE, Search,
-    is_nominal, model_posterior, name, other,
+    CandidateModel, EffectPosterior, Gap, LIKELIER_THAN_NOT, ModelPosterior, Other, RELEVANT_SHARE,
+    Search, is_nominal, model_posterior, name, other,
 };
 
 use crate::prepared::Prepared;
 use crate::{DiagnoseError, Status};
-
-/// The status is `unknown` where another cause is likelier than this.
-pub const LIKELIER_THAN_NOT: f64 = 0.5;
 
 /// What the training records say.
 pub(crate) struct Decision {

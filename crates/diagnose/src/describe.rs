@@ -32,15 +32,22 @@ pub(crate) fn verdict(
     checked: &Checked,
     units: &Units,
 ) -> Verdict {
-    let is_unknown = decision.status == Status::Unknown || checked.is_refuted;
+    // What is judged by the check records is the best set, unless a free law takes its place.
+    let of_training = decision.other.probability;
+    let is_judged = decision.status != Status::Unknown;
+    let other = match is_judged {
+        true => of_training.max(checked.other),
+        false => of_training,
+    };
     // Where nothing is named there is nothing to refute.
-    let refuted = checked.is_refuted && !decision.effects.is_empty();
+    let refuted = is_judged && checked.is_refuted() && !decision.effects.is_empty();
+    let is_unknown = !is_judged || checked.is_refuted();
     // For `unknown` the final fit is that of something else: the values are those of the search.
     let fitted = match is_unknown {
         true => decision.posterior.best().map(|best| &best.fit),
         false => Some(estimate),
     };
-    let own = 1.0 - decision.other.probability;
+    let own = 1.0 - other;
     let named: Vec<NamedEffect> = decision
         .order()
         .into_iter()
@@ -71,7 +78,7 @@ pub(crate) fn verdict(
         unexplained: unexplained(model, checked),
         refuted,
         other: OtherCause {
-            probability: decision.other.probability,
+            probability: other,
             at: decision.other.law.as_ref().map(|law| law.placed.at.clone()),
             closed: decision.other.law.as_ref().map(|law| 1.0 - law.left),
         },
@@ -234,7 +241,8 @@ fn description(
     let mut sentences = vec![];
     if refuted {
         sentences.push(
-            "the check records refute the best set: it predicts them no better than re-estimated parameters do".into(),
+            "the check records refute the best set: it closes less than half of the gap there"
+                .into(),
         );
     }
     for channel in unconnected(checked) {

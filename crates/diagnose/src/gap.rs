@@ -58,9 +58,13 @@ pub(crate) fn total(nrmse: &[f64]) -> f64 {
     (nrmse.iter().map(|e| e * e).sum::<f64>() / nrmse.len().max(1) as f64).sqrt()
 }
 
-/// Share of what a model leaves, rms over the channels, that another would close if it were true: 1 − √(1 − d²/r²), where r²
-/// is what the first leaves and d² how far apart the two predict.
-pub(crate) fn closed_if_true(std: &[f64], first: &Prediction, other: &Prediction) -> f64 {
+/// Share of what a model leaves, rms over the channels, that another would close if it were true: 1 − √(1 − d²/r²), where r
+/// is what the first leaves above the noise and d how far apart the two predict.
+pub(crate) fn closed_if_true(
+    std: &[f64],
+    (first, left): (&Prediction, f64),
+    other: &Prediction,
+) -> f64 {
     let apart = std.iter().enumerate().map(|(c, std)| {
         let runs = first.discrepancy.iter().zip(&other.discrepancy);
         let (mut sum, mut count) = (0.0, 0);
@@ -72,7 +76,7 @@ pub(crate) fn closed_if_true(std: &[f64], first: &Prediction, other: &Prediction
         (sum / count.max(1) as f64).sqrt() / std
     });
     let apart = total(&apart.collect::<Vec<f64>>());
-    let share = apart / total(&first.nrmse).max(f64::MIN_POSITIVE);
+    let share = apart / left.max(f64::MIN_POSITIVE);
     1.0 - (1.0 - share * share).max(0.0).sqrt()
 }
 
@@ -160,8 +164,9 @@ mod tests {
         let other = leaves(vec![0.6, -0.6, -0.6, 0.6]);
         assert!((first.nrmse[0] - 0.5).abs() < 1e-12);
         assert!((other.nrmse[0] - 0.3).abs() < 1e-12);
-        assert!((closed_if_true(&[2.0], &first, &other) - 0.4).abs() < 1e-12);
-        assert!(closed_if_true(&[2.0], &first, &first).abs() < 1e-12);
+        let without = (&first, total(&first.nrmse));
+        assert!((closed_if_true(&[2.0], without, &other) - 0.4).abs() < 1e-12);
+        assert!(closed_if_true(&[2.0], without, &first).abs() < 1e-12);
     }
 
     #[test]

@@ -81,7 +81,6 @@ mod spread;
 mod structure;
 mod units;
 
-pub use decide::LIKELIER_THAN_NOT;
 pub use diagnosis::*;
 pub use error::DiagnoseError;
 pub use limit::Limit;
@@ -89,4 +88,5 @@ pub use outcome::NominalEstimate;
 pub use pipeline::{Outcome, Progress, Request, diagnose};
 pub use sets::{FittedEffect, FittedSet};
 pub use simgap_estimate::Cancel;
+pub use simgap_inference::LIKELIER_THAN_NOT;
 pub use simgap_inference::Stage;

@@ -15,23 +15,25 @@ use crate::gap::{predict, total};
 const MOST_STRETCHES: usize = 20;
 const SHORTEST: usize = 128;
 
-/// Whether a corrected model closes a share of what re-estimated parameters leave of stretches of the check records, each
-/// from an initial state of its own.
-pub(crate) fn closes(
+/// What a corrected model leaves of stretches of the check records, each from an initial state of its own, over what re-estimated
+/// parameters leave of them; `None` where records cannot be cut, or with a clock: set anew in every stretch it would follow anything.
+pub(crate) fn left(
     check: &Problem,
     recalibrated: &[Placed],
     corrected: &[Placed],
     options: &FitOptions,
-    share: f64,
-) -> Result<bool, EstimateError> {
-    if !check.may_cut() {
-        return Ok(false);
+) -> Result<Option<f64>, EstimateError> {
+    let has_clock = corrected
+        .iter()
+        .any(|placed| placed.effect.clock().is_some());
+    if has_clock || !check.may_cut() {
+        return Ok(None);
     }
     let cut = check.with_runs(check.runs.iter().flat_map(stretches).collect());
     let left = |placed: &[Placed]| -> Result<f64, EstimateError> {
         Ok(total(&predict(&cut, placed, options)?.nrmse))
     };
-    Ok(left(corrected)? <= (1.0 - share) * left(recalibrated)?)
+    Ok(Some(left(corrected)? / left(recalibrated)?))
 }
 
 fn stretches(run: &Run) -> impl Iterator<Item = Run> + '_ {

@@ -42,7 +42,7 @@ pub use gap::{Gap, RELEVANT_SHARE};
 pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterior};
 pub use model_space::ModelSpace;
 pub use noise_model::NoiseModel;
-pub use other::{FreeLaw, Other, other};
+pub use other::{FreeLaw, LIKELIER_THAN_NOT, Other, other, other_by};
 pub use proposals::RECALIBRATION_STD;
 pub use search::{Budget, Search};
 pub use stage::Stage;

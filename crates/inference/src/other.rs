@@ -21,6 +21,8 @@ use crate::gap::{Gap, RELEVANT_SHARE, over_noise};
 use crate::motion;
 use crate::search::Search;
 
+/// The status is `unknown` where another cause is likelier than this, by the training records or by the check records.
+pub const LIKELIER_THAN_NOT: f64 = 0.5;
 /// p₀ of (1).
 const PRIOR: f64 = 0.05;
 /// m and n of (1).
@@ -102,6 +104,12 @@ fn of_any_cause(left: f64) -> f64 {
     (PRIOR / (1.0 - PRIOR)).ln() + 0.5 * ANY_CAUSE * (left.powi(2) / relevant).ln_1p()
 }
 
+/// The probability of a cause of any kind outside the catalogue by (1), where a share of what should be explained is left.
+#[must_use]
+pub fn other_by(left: f64) -> f64 {
+    probability_of(of_any_cause(left.min(1.0)))
+}
+
 /// The probability that what an effect explains beside others has a cause of any kind outside the catalogue, by (1) with what the others
 /// leave as the gap: an effect that leaves much of that follows it, and may not be it.
 pub(crate) fn other_of_one(
@@ -114,8 +122,7 @@ pub(crate) fn other_of_one(
         noise: noise.to_vec(),
         std: search.problem.output_std(),
     };
-    let left = gap.left(&with.fit.variance).min(1.0);
-    probability_of(of_any_cause(left))
+    other_by(gap.left(&with.fit.variance))
 }
 
 /// Whether values that agree are those of what closes the gap: the set without these effects leaves a share of it that counts.

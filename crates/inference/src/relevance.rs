@@ -56,13 +56,15 @@ impl Search<'_> {
         let channels = closed(with, without).zip(left);
         let rounded = stored_rounding_variance(self.problem);
         let mut channels = channels.zip(self.gap.iter().zip(rounded));
-        let is_first = without.effects().is_empty();
+        // A law in the place of a special case of it is no further name.
+        let is_further =
+            !without.effects().is_empty() && with.effects().len() > without.effects().len();
         channels.any(|((closed, (left, (noise, floor))), (gap, rounded))| {
             let stands_out = *left > NOISE_KNOWN * floor;
             stands_out
                 && closed > (NOISE_KNOWN - 1.0) * rounded
                 && closed > (RELEVANT_SHARE * gap).powi(2)
-                && (is_first || closed > OF_REST * (left - noise))
+                && (!is_further || closed > OF_REST * (left - noise))
         })
     }
 

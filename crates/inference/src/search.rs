@@ -270,7 +270,8 @@ impl<'a> Search<'a> {
         let grown: Result<Vec<_>, _> = singles.map(|single| self.grow(single, 0)).collect();
         pool.extend(grown?.concat());
         rank(&mut pool);
-        is_settled = self.settle(&mut pool, 1)?;
+        // That one effect leaves no share that counts is said once effects were tried beside parameters, too.
+        is_settled = self.settle(&mut pool, usize::from(is_bent))?;
         if !is_bent && !is_settled {
             is_settled = self.beside(recalibrated.as_ref(), &mut pool, 1)?;
         }

@@ -202,7 +202,7 @@ fn left_over(html: &mut Html, diagnosis: &Diagnosis) {
         ));
     }
     if verdict.refuted {
-        text.push_str(" The check records refute it: it predicts them no better than re-estimated parameters do.");
+        text.push_str(" The check records refute it: it closes less than half of the gap there.");
     }
     html.element("p", &[], &text);
 }
