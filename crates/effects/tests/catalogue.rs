@@ -22,7 +22,7 @@ fn trace(action: &Action, at: &Location, time_step_s: f64) -> Vec<f64> {
         Action::Member(build) => trace(&Action::Force(build(&model_at(at), at)), at, time_step_s),
         Action::Force(law) => {
             let mut trace = Vec::new();
-            for displacement in [-0.009, -0.001, 0.0, 0.0045] {
+            for displacement in [-0.011, -0.001, 0.0, 0.0045] {
                 for velocity in [-0.05, -0.002, 0.0, 0.001, 0.04] {
                     trace.push(if law.remembers() {
                         moved(law.as_ref(), displacement)

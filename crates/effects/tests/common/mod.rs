@@ -117,6 +117,7 @@ pub(crate) fn scale() -> SiteScale {
         time_step_s: 0.001,
         duration_s: 20.0,
         displacement_range_m: [-0.004, 0.005],
+        travel_m: 0.009,
         signal_range: [-1.1, 1.3],
         signal_step: 0.01,
         stiffness_n_per_m: 9000.0,
