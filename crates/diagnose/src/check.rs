@@ -55,6 +55,20 @@ impl Checked {
     pub(crate) fn is_refuted(&self) -> bool {
         self.other > LIKELIER_THAN_NOT
     }
+
+    /// Whether every sample was predicted.
+    pub(crate) fn is_finite(&self) -> bool {
+        let predicted = self.predictions.iter().flat_map(|p| &p.discrepancy);
+        predicted.flatten().flatten().all(|left| left.is_finite())
+    }
+
+    /// The same in the place of an answer that runs away: it closes nothing of these records.
+    pub(crate) fn in_place_of_what_runs_away(self) -> Checked {
+        Checked {
+            other: other_by(1.0),
+            ..self
+        }
+    }
 }
 
 impl<'a> Check<'a> {

@@ -259,9 +259,19 @@ fn finish<R: Borrow<Record>>(
     stopped_early: bool,
 ) -> Result<Outcome, DiagnoseError> {
     progress(Stage::CheckRecords.name());
-    let placed: Vec<Placed> = estimate.estimate.placed().cloned().collect();
     let check = Check::new(&prepared.train, &prepared.recalibrated, data.check.clone())?;
-    let checked = check.of((&estimate, options), &placed)?;
+    let placed = |estimate: &Fit| -> Vec<Placed> { estimate.estimate.placed().cloned().collect() };
+    let checked = check.of((&estimate, options), &placed(&estimate))?;
+    // What runs away along a check record is no model of it, whatever was measured there.
+    let (estimate, checked) = match checked.is_finite() {
+        true => (estimate, checked),
+        false => {
+            let known = prepared.recalibrated.clone();
+            let of_known = check.of((&known, options), &placed(&known))?;
+            (known, of_known.in_place_of_what_runs_away())
+        }
+    };
+    let placed = placed(&estimate);
     let verdict = describe::verdict(request.model, &decision, &estimate, &checked, &data.units);
     let candidates = describe::candidates(&decision, &verdict, &check)?;
     let floors: Vec<f64> = checked.gap.channels.iter().map(|c| c.noise_floor).collect();

@@ -179,3 +179,18 @@ fn best_law(
     let of_parameters = gap.left(&base.fit.variance).min(1.0);
     Ok(least.filter(|law| law.left < of_parameters))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_odds_are_even_where_half_is_left() {
+        assert!((other_by(0.0) - PRIOR).abs() < 1e-12);
+        assert!(other_by(0.45) < LIKELIER_THAN_NOT && other_by(0.5) > LIKELIER_THAN_NOT);
+        // More than all is all.
+        assert_eq!(other_by(3.0), other_by(1.0));
+        let shares: Vec<f64> = (0..=20).map(|n| other_by(f64::from(n) / 20.0)).collect();
+        assert!(shares.windows(2).all(|pair| pair[0] < pair[1]));
+    }
+}
