@@ -8,7 +8,7 @@
 //! use simgap_effects::{Action, SiteKind, catalogue, find};
 //! use simgap_integrate::exact::MemberMotion;
 //!
-//! assert_eq!(catalogue().len(), 55);
+//! assert_eq!(catalogue().len(), 56);
 //! let spring = find("cubic_stiffness").ok_or("not in the catalogue")?;
 //! assert_eq!(spring.parameters()[0].unit, "N/m^3");
 //! // 2000 N/m³ at 0.1 m: 2 N.
