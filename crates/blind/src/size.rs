@@ -56,16 +56,10 @@ pub(crate) fn site_scale(
         Location::Channel(name) => model.output_index(name),
         _ => None,
     };
-    let is_here = |between: &[String; 2]| match at {
-        Location::Between(pair) => simgap_model::same_pair(between, pair),
-        _ => false,
+    let [stiffness, damping] = match at {
+        Location::Between(pair) => model.stiffness_and_damping(pair),
+        _ => [0.0; 2],
     };
-    let springs = model.springs.iter();
-    let springs = springs.filter(|spring| is_here(&spring.between));
-    let stiffness: f64 = springs.map(|spring| spring.stiffness).sum();
-    let dampers = model.dampers.iter();
-    let dampers = dampers.filter(|damper| is_here(&damper.between));
-    let damping: f64 = dampers.map(|damper| damper.damping).sum();
     let force_n = positive(if inertia > 0.0 {
         inertia
     } else {

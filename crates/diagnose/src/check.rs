@@ -56,10 +56,13 @@ impl Checked {
         self.other > LIKELIER_THAN_NOT
     }
 
-    /// Whether every sample was predicted.
-    pub(crate) fn is_finite(&self) -> bool {
-        let predicted = self.predictions.iter().flat_map(|p| &p.discrepancy);
-        predicted.flatten().flatten().all(|left| left.is_finite())
+    /// Whether the answer runs away along these records.
+    pub(crate) fn runs_away(&self) -> bool {
+        let [.., corrected] = &self.predictions[..] else {
+            return false;
+        };
+        let mut left = corrected.discrepancy.iter().flatten().flatten();
+        left.any(|left| !left.is_finite())
     }
 
     /// The same in the place of an answer that runs away: it closes nothing of these records.
@@ -136,32 +139,27 @@ impl<'a> Check<'a> {
         let left = total(&left_of_channels);
         let nominal = gap.nominal.max(f64::MIN_POSITIVE);
         // What is named beside parameters is to explain what these leave, and closes some of that where a check record can show it.
-        let of_nominal = (
-            gap.nominal,
-            &predictions[0],
-            total(&above_noise(|c| c.nominal)),
-        );
-        let of_parameters = (
-            gap.recalibrated,
-            &predictions[1],
-            total(&above_noise(|c| c.recalibrated)),
-        );
-        let (share, (to_explain, without, to_close)) =
-            match placed.iter().all(simgap_inference::is_nominal) {
-                true => (0.0, of_nominal),
-                false if gap.nominal < gap.recalibrated => (RELEVANT_SHARE, of_nominal),
-                false => (RELEVANT_SHARE, of_parameters),
-            };
+        let are_parameters = placed.iter().all(simgap_inference::is_nominal);
+        let share = if are_parameters { 0.0 } else { RELEVANT_SHARE };
+        let (to_explain, without, to_close) = match are_parameters || gap.nominal < gap.recalibrated
+        {
+            true => (gap.nominal, &predictions[0], above_noise(|c| c.nominal)),
+            false => (
+                gap.recalibrated,
+                &predictions[1],
+                above_noise(|c| c.recalibrated),
+            ),
+        };
         // No less than what noise is known to.
-        let to_close = to_close.max((NOISE_KNOWN - 1.0).sqrt() * gap.noise_floor);
+        let to_close = total(&to_close).max((NOISE_KNOWN - 1.0).sqrt() * gap.noise_floor);
         let is_complete = left <= INCOMPLETE * to_explain;
         let std = self.problem.output_std();
         let is_tested = closed_if_true(&std, (without, to_close), &predictions[2]) >= share;
         let mut notes = vec![];
         // What leaves no more than noise and the accuracy of the simulation contradicts nothing.
-        let mut other = match !is_complete {
-            true => other_by(left / to_close),
-            false => 0.0,
+        let mut other = match is_complete {
+            true => 0.0,
+            false => other_by(left / to_close),
         };
         if other > LIKELIER_THAN_NOT
             && let Some(left) = multi_step::left(&self.problem, known, placed, &self.plain)?

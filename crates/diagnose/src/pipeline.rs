@@ -263,13 +263,13 @@ fn finish<R: Borrow<Record>>(
     let placed = |estimate: &Fit| -> Vec<Placed> { estimate.estimate.placed().cloned().collect() };
     let checked = check.of((&estimate, options), &placed(&estimate))?;
     // What runs away along a check record is no model of it, whatever was measured there.
-    let (estimate, checked) = match checked.is_finite() {
-        true => (estimate, checked),
-        false => {
+    let (estimate, checked) = match checked.runs_away() {
+        true => {
             let known = prepared.recalibrated.clone();
             let of_known = check.of((&known, options), &placed(&known))?;
             (known, of_known.in_place_of_what_runs_away())
         }
+        false => (estimate, checked),
     };
     let placed = placed(&estimate);
     let verdict = describe::verdict(request.model, &decision, &estimate, &checked, &data.units);

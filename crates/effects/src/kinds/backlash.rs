@@ -74,8 +74,9 @@ impl Effect for Backlash {
     fn action(&self, values: &[f64]) -> Action {
         let half_gap = 0.5 * values[0];
         Action::Member(Box::new(move |model, at| {
+            let [stiffness, _] = members::stiffness_and_damping(model, at);
             Box::new(Law {
-                stiffness: members::stiffness(model, at),
+                stiffness,
                 half_gap,
             })
         }))

@@ -94,9 +94,10 @@ impl Effect for ForceLimit {
     fn action(&self, values: &[f64]) -> Action {
         let [upper, lower] = [values[0], values[1]];
         Action::Member(Box::new(move |model: &Model, at: &Location| {
+            let [stiffness, damping] = members::stiffness_and_damping(model, at);
             Box::new(Law {
-                stiffness: members::stiffness(model, at),
-                damping: members::damping(model, at),
+                stiffness,
+                damping,
                 upper,
                 lower,
             })

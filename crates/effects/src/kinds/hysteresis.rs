@@ -3,6 +3,7 @@
 use simgap_integrate::exact::{Followed, ForceLaw, MemberMotion};
 use simgap_integrate::lanes;
 
+use super::slid;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// A spring that remembers its way and yields (Bouc-Wen).
@@ -23,9 +24,6 @@ pub(crate) struct Hysteresis;
 const STEP: f64 = 0.25;
 /// From here on the force has levelled off.
 const LEVEL: f64 = 1.0 - 1e-10;
-
-/// Share of its level to which it has slid where a record begins in motion.
-const SLID: f64 = 0.9;
 
 struct Law {
     stiffness: f64,
@@ -223,14 +221,8 @@ impl Effect for Hysteresis {
         Some(vec![values[0]])
     }
 
-    /// At rest, or slid to within a tenth of its level on either side: a record begins while the machine moves as often as at rest.
     fn own_starts(&self, values: &[f64]) -> Vec<Vec<f64>> {
-        let begun = |start: f64| {
-            let mut values = values.to_vec();
-            values[4] = start;
-            values
-        };
-        [0.0, SLID, -SLID].map(begun).to_vec()
+        slid::starts(values, 4)
     }
 
     fn action(&self, values: &[f64]) -> Action {

@@ -1,22 +1,11 @@
 //! What the members of a place sum up to.
 
-use simgap_model::{Location, Model, same_pair};
+use simgap_model::{Location, Model};
 
-/// Sum over what joins the two nodes of a place.
-fn sum<'a>(members: impl Iterator<Item = (&'a [String; 2], f64)>, at: &Location) -> f64 {
-    let Location::Between(pair) = at else {
-        return 0.0;
-    };
-    let here = members.filter(|(between, _)| same_pair(between, pair));
-    here.map(|(_, value)| value).sum()
-}
-
-/// Stiffness of the springs at a place, N/m.
-pub(super) fn stiffness(model: &Model, at: &Location) -> f64 {
-    sum(model.springs.iter().map(|s| (&s.between, s.stiffness)), at)
-}
-
-/// Damping of the dampers at a place, N s/m.
-pub(super) fn damping(model: &Model, at: &Location) -> f64 {
-    sum(model.dampers.iter().map(|d| (&d.between, d.damping)), at)
+/// Stiffness, N/m, and damping, N s/m, of the members at a place; zero at one that no member joins.
+pub(super) fn stiffness_and_damping(model: &Model, at: &Location) -> [f64; 2] {
+    match at {
+        Location::Between(pair) => model.stiffness_and_damping(pair),
+        _ => [0.0; 2],
+    }
 }

@@ -48,6 +48,7 @@ pub(crate) mod sensor_delay;
 pub(crate) mod sensor_drift;
 pub(crate) mod sensor_gain;
 pub(crate) mod sensor_lag;
+mod slid;
 pub(crate) mod spool_lag;
 pub(crate) mod stiffness_error;
 pub(crate) mod stribeck_friction;

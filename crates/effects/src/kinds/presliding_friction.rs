@@ -3,6 +3,7 @@
 use simgap_integrate::exact::{Followed, ForceLaw, MemberMotion, elementary};
 use simgap_integrate::lanes;
 
+use super::slid;
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
 
 /// Friction that gives like a spring, with a damper beside it, before it slides.
@@ -29,9 +30,6 @@ pub(crate) struct PreslidingFriction;
 const SHARES: [f64; 3] = [0.02, 0.15, 0.8];
 /// Damping ratio of the mass on the stiffness before sliding, to start from.
 const DAMPING: f64 = 0.1;
-
-/// Share of its level to which it has slid where a record begins in motion.
-const SLID: f64 = 0.9;
 
 struct Law {
     friction: f64,
@@ -161,14 +159,8 @@ impl Effect for PreslidingFriction {
         (parameter == "damping_time_s").then_some(0.0)
     }
 
-    /// At rest, or slid to within a tenth of its level on either side: a record begins while the machine moves as often as at rest.
     fn own_starts(&self, values: &[f64]) -> Vec<Vec<f64>> {
-        let begun = |start: f64| {
-            let mut values = values.to_vec();
-            values[3] = start;
-            values
-        };
-        [0.0, SLID, -SLID].map(begun).to_vec()
+        slid::starts(values, 3)
     }
 
     fn action(&self, values: &[f64]) -> Action {
