@@ -3,7 +3,9 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use xtask::{blind_check, demo_records, effects_docs, reproduce, rigs, tidy, tutorial_records};
+use xtask::{
+    blind_check, demo_records, effects_docs, machines, reproduce, rigs, tidy, tutorial_records,
+};
 
 #[derive(Parser)]
 #[command(name = "xtask", about = "Project tasks")]
@@ -25,6 +27,8 @@ enum Task {
     BlindWorker(blind_check::WorkerArgs),
     /// Draw machines with a withheld cause, have the program diagnose them, and score the answers
     Rigs(rigs::Args),
+    /// Have the program diagnose real machines whose cause is known, and score the answers
+    Machines(machines::Args),
     /// Write docs/effects.md from the catalogue of effects
     EffectsDocs(effects_docs::Args),
     /// Make the logger files that docs/tutorial.md works with
@@ -40,7 +44,8 @@ fn main() -> ExitCode {
         Task::DemoRecords(args) => return demo(&args),
         Task::BlindCheck(args) => return blind_check::main(&args),
         Task::BlindWorker(args) => return blind_check::worker_main(&args),
-        Task::Rigs(args) => return rigs_main(&args),
+        Task::Rigs(args) => return told(rigs::run(&args)),
+        Task::Machines(args) => return told(machines::run(&args)),
         Task::EffectsDocs(args) => return finish(effects_docs::run(&args)),
         Task::TutorialRecords(args) => return finish(tutorial_records::run(&args)),
         Task::Tidy => return finish(tidy::run()),
@@ -89,9 +94,10 @@ fn demo(args: &demo_records::DemoArgs) -> ExitCode {
     }
 }
 
+/// Prints a page.
 #[allow(clippy::print_stdout, clippy::print_stderr)]
-fn rigs_main(args: &rigs::Args) -> ExitCode {
-    match rigs::run(args) {
+fn told<E: std::fmt::Display>(page: Result<String, E>) -> ExitCode {
+    match page {
         Ok(text) => {
             print!("{text}");
             ExitCode::SUCCESS

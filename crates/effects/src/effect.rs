@@ -213,8 +213,9 @@ pub trait Effect: Sync + Send {
     }
 
     /// Kinds whose force on a mass has the same form in frequency, or is the same as long as what the effect hides is not moved by the
-    /// mass, at the mass itself or at its spring to the ground; or that do the same to a channel as a slow plant sees it. Where one fits,
-    /// the other may fit as well from the values that move the mass alike.
+    /// mass, at the mass itself or at its spring to the ground; or that do the same to a channel as a slow plant sees it; or that take as
+    /// much of a force in its channel as between the mass that it drives and the ground. Where one fits, the other may fit as well from the
+    /// values that move the mass alike.
     fn resembles(&self) -> &'static [&'static str] {
         &[]
     }

@@ -10,7 +10,8 @@ pub struct SiteScale {
     pub displacement_m: f64,
     /// rms of the velocity across the site about its mean, m/s.
     pub velocity_m_per_s: f64,
-    /// Typical force at the site, N: rms of what accelerates the masses it joins.
+    /// Typical force at the site, N: the largest rms of what accelerates the masses it joins, of what drives them, and of what its nominal
+    /// springs and dampers carry. A slow machine moves against its losses, and hardly against its inertia.
     pub force_n: f64,
     /// rms of the channel about its mean, in model units (input and output sites).
     pub signal: f64,

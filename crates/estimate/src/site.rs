@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use simgap_effects::{LINES, SiteScale};
-use simgap_model::{Location, Model, OutputKind, same_pair};
+use simgap_model::{InputKind, Location, Model, OutputKind, same_pair};
 use simgap_signal::peaks::{PeakOptions, find_peaks};
 use simgap_signal::spectrum::spectrum;
 use simgap_signal::{Trend, Window};
@@ -61,10 +61,16 @@ impl Problem {
             false => rms_about_mean(|| path.displacement.iter()),
         });
         let velocity_m_per_s = positive(rms_about_mean(|| path.velocity.iter()));
-        let force_n = positive(inertia);
-        let longest = self.runs.iter().map(Run::duration_s).fold(0.0, f64::max);
         let stiffness = stiffness_at(&self.model, at);
         let damping = damping_at(&self.model, at);
+        let carried = [stiffness * displacement_m, damping * velocity_m_per_s];
+        let drives = self.model.inputs.iter().enumerate();
+        let driven = drives
+            .filter(|(_, input)| input.kind == InputKind::Force && is_node_at(&input.at, at))
+            .map(|(i, _)| rms_about_mean(|| sent(i)));
+        let forces = driven.chain(carried);
+        let force_n = positive(forces.fold(inertia, f64::max));
+        let longest = self.runs.iter().map(Run::duration_s).fold(0.0, f64::max);
         let first = self.runs.first();
         let step = first.map_or(1.0, |run| run.time_step_s);
         let (signal_step, signal_level) = channel
@@ -160,7 +166,7 @@ impl Problem {
         }
     }
 
-    /// Typical force around a place, N: inertia of the masses it joins, else the measured forces.
+    /// Inertia of the masses that a place joins, N; the measured forces where it joins none.
     fn force_scale(&self, at: &Location, acceleration: f64) -> f64 {
         let inertia = masses_at(&self.model, at).fold(0.0, f64::max) * acceleration;
         if inertia > 0.0 {
@@ -243,15 +249,19 @@ fn positive(value: f64) -> f64 {
 }
 
 fn masses_at<'a>(model: &'a Model, at: &'a Location) -> impl Iterator<Item = f64> + 'a {
-    let names: Vec<&String> = match at {
-        Location::Between(pair) => pair.iter().collect(),
-        Location::Mass(mass) => vec![mass],
-        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => vec![],
-    };
     let masses = model.masses.iter();
     masses
-        .filter(move |mass| names.contains(&&mass.name))
+        .filter(move |mass| is_node_at(&mass.name, at))
         .map(|mass| mass.value)
+}
+
+/// Whether a node is one of those of a place.
+fn is_node_at(node: &String, at: &Location) -> bool {
+    match at {
+        Location::Between(pair) => pair.contains(node),
+        Location::Mass(mass) => mass == node,
+        Location::Input(_) | Location::Channel(_) | Location::Parameter(_) => false,
+    }
 }
 
 fn mass_at(model: &Model, at: &Location) -> Option<f64> {

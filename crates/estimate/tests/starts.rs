@@ -197,6 +197,38 @@ fn verify_a_long_delay_is_told_by_the_records() {
     }
 }
 
+/// A slow slide moves against its damper: that, and what drives it, tell the size of forces, and not its inertia.
+#[test]
+fn verify_forces_on_a_slow_machine_are_those_that_it_moves_against() {
+    let text = |damping: f64| {
+        format!(
+            "schema = \"simgap-model/1\"\nname = \"slide\"\n\
+             [[mass]]\nname = \"slide\"\nvalue = 2.0\n\
+             [[damper]]\nname = \"c\"\nbetween = [\"slide\", \"ground\"]\ndamping = {damping}\n\
+             [[input]]\nchannel = \"u\"\nkind = \"force\"\nat = \"slide\"\n\
+             [[output]]\nchannel = \"v\"\nkind = \"velocity\"\nat = \"slide\"\n"
+        )
+    };
+    let wave = |k: i32| 20.0 * (0.5 * 0.01 * f64::from(k)).sin();
+    let force: Vec<f64> = (0..4000).map(wave).collect();
+    let scale = |damping: f64, place: &Location| {
+        let model = model(&text(damping));
+        let run = truth(&model, &[], force.clone(), 0.01, &[0.0; 2]);
+        let problem = problem(&model, noisy(&run, 1e-5, 3));
+        let nothing = start(vec![], vec![], &[0.0; 2]);
+        let base = fit(&problem, &nothing, &FitOptions::white(1)).unwrap();
+        problem.site_scale(&base, place).unwrap().force_n
+    };
+    let driven = 20.0 / 2f64.sqrt();
+    for place in [between("slide", "ground"), Location::Mass("slide".into())] {
+        let slow = scale(150.0, &place);
+        assert!((slow / driven - 1.0).abs() < 0.02, "{place}: {slow}");
+        // Against its inertia alone it moves by as much.
+        let fast = scale(0.02, &place);
+        assert!((fast / driven - 1.0).abs() < 0.02, "{place}: {fast}");
+    }
+}
+
 /// A slide whose speed alone is measured, and a force that repeats along its way.
 const SLIDE: &str = r#"schema = "simgap-model/1"
 name = "slide"

@@ -41,6 +41,13 @@ impl Asked {
         self.places[&key]
     }
 
+    /// The likeliest of some sets, by their own log posterior; of equals the first.
+    pub(crate) fn likeliest(&self, places: &[usize]) -> Option<usize> {
+        let log_posterior = |place: &&usize| self.sets[**place].log_posterior();
+        let by_posterior = |a: &&usize, b: &&usize| log_posterior(a).total_cmp(&log_posterior(b));
+        places.iter().rev().max_by(by_posterior).copied()
+    }
+
     /// Takes a likelier fit of a set that was not asked and that no other stands for; whether it did.
     pub(crate) fn improve(&mut self, index: usize, set: CandidateModel) -> bool {
         let is_alone = self.weights[index] == self.sets[index].log_posterior();
@@ -201,6 +208,17 @@ mod tests {
         let sum: f64 = [-40.0, 0.0, 2.0, 1.0].iter().map(|w: &f64| w.exp()).sum();
         assert!((all - sum).abs() < 1e-12 * sum, "no probability is lost");
         assert!((weights[0] - (2f64.exp() + 1f64.exp()).ln()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn of_effects_that_can_stand_for_each_other_the_set_without_one_is_the_likeliest() {
+        let mut asked = asked();
+        // What stands for a set does not make it a better fit.
+        asked.note(2, 0);
+        assert_eq!(asked.likeliest(&[0, 1]), Some(1));
+        assert_eq!(asked.likeliest(&[3, 2, 1]), Some(2));
+        assert_eq!(asked.likeliest(&[1, 1, 0]), Some(1));
+        assert_eq!(asked.likeliest(&[]), None);
     }
 
     #[test]

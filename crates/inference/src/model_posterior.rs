@@ -139,18 +139,14 @@ impl Search<'_> {
         Ok(asked)
     }
 
-    /// Where the set is that lacks an irrelevant effect of a set, or has a special case of it; none where all are relevant.
+    /// Where the likeliest set is that lacks an irrelevant effect of a set, or has a special case of it; none where all are relevant.
     fn without_irrelevant(
         &self,
         set: &CandidateModel,
         asked: &mut Asked,
     ) -> Result<Option<usize>, EstimateError> {
-        // What is fitted already tells soonest.
-        let is_known = |i: &usize| asked.places.contains_key(&set.key_without(*i));
-        let (mut order, unknown): (Vec<usize>, Vec<usize>) =
-            (0..set.effects().len()).partition(is_known);
-        order.extend(unknown);
-        for i in order {
+        let mut smaller = vec![];
+        for i in 0..set.effects().len() {
             let moved = self.moved(set, i)?;
             let from_here = || self.fit(&remove(&set.fit.estimate, i, self.nominal));
             let known = asked.places.get(&set.key_without(i)).copied();
@@ -164,7 +160,8 @@ impl Search<'_> {
                 is_relevant = self.is_relevant(set, &asked.sets[place], &moved);
             }
             if !is_relevant {
-                return Ok(Some(place));
+                smaller.push(place);
+                continue;
             }
             // A law beyond a special case of it is held to the same, by what they differ by.
             for special in self.shrink(set, i) {
@@ -172,11 +169,12 @@ impl Search<'_> {
                 let is_relevant = self.is_relevant(set, &special, &beyond);
                 let place = asked.place(special);
                 if !is_relevant {
-                    return Ok(Some(place));
+                    smaller.push(place);
                 }
             }
         }
-        Ok(None)
+        // Of effects that can stand for each other the one goes without which more is left.
+        Ok(asked.likeliest(&smaller))
     }
 }
 

@@ -1,7 +1,6 @@
 //! Why no score is made.
 
-use std::io;
-use std::path::Path;
+use crate::asked::AskedError;
 
 /// Why no score was made.
 #[derive(Debug, thiserror::Error)]
@@ -15,31 +14,10 @@ pub enum RigsError {
     /// A case cannot be drawn.
     #[error(transparent)]
     Rig(#[from] simgap_rigs::RigError),
-    /// A file cannot be read or written.
-    #[error("{path}: {source}")]
-    File {
-        /// The file.
-        path: String,
-        /// Why.
-        source: io::Error,
-    },
-    /// A truth or an answer that cannot be read.
-    #[error("{path}: {source}")]
-    Json {
-        /// The file.
-        path: String,
-        /// Why.
-        source: serde_json::Error,
-    },
+    /// A file cannot be read or written, or the program not be asked.
+    #[error(transparent)]
+    Asked(#[from] AskedError),
     /// No threads.
     #[error(transparent)]
     Threads(#[from] rayon::ThreadPoolBuildError),
-}
-
-/// An error at a file.
-pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> RigsError + '_ {
-    move |source| RigsError::File {
-        path: path.display().to_string(),
-        source,
-    }
 }

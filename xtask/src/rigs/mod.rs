@@ -1,7 +1,6 @@
 //! `cargo xtask rigs`: draws machines with a withheld cause, has a program diagnose each, scores the answers.
 
 mod args;
-mod ask;
 mod error;
 
 use std::fs;
@@ -11,9 +10,10 @@ use std::sync::Mutex;
 use rayon::prelude::*;
 use simgap_rigs::{Answer, Filter, Role, Truth, draw_case, page, score};
 
+use crate::asked::{Asked, at, json};
+
 pub use args::Args;
 pub use error::RigsError;
-use error::at;
 
 fn filter(args: &Args) -> Result<Filter, RigsError> {
     let role = match &args.role {
@@ -53,7 +53,13 @@ pub fn run(args: &Args) -> Result<String, RigsError> {
             }
             let answer = match args.draw_only {
                 true => None,
-                false => ask::answer(args, &folder, &truth.name)?,
+                false => Asked {
+                    program: &args.program,
+                    folder: &folder,
+                    out: &args.out.join("answers").join(&truth.name),
+                    mend: false,
+                }
+                .answer(args.score_only)?,
             };
             Ok((truth, answer))
         };
@@ -65,10 +71,7 @@ pub fn run(args: &Args) -> Result<String, RigsError> {
         .map(|(truth, _)| serde_json::to_string(truth))
         .collect();
     let path = args.out.join("truths.jsonl");
-    let text = lines.map_err(|source| RigsError::Json {
-        path: path.display().to_string(),
-        source,
-    })?;
+    let text = lines.map_err(json(&path))?;
     fs::write(&path, text.join("\n") + "\n").map_err(at(&path))?;
     let pairs: Vec<(Truth, Answer)> = answered
         .into_iter()

@@ -70,19 +70,22 @@ impl Effect for CoulombFriction {
         vec![vec![0.1 * scale.force_n]]
     }
 
-    /// Of a damper that loses as much, where the motion is a sine.
+    /// Of a damper that loses as much, where the motion is a sine; of a drive that does nothing below as much, where it moves one way.
     fn resembles(&self) -> &'static [&'static str] {
-        &["damping_error"]
+        &["damping_error", "input_dead_zone"]
     }
 
     /// A damper c that loses as much in a cycle of a sine as friction F: π c ω X² = 4 F X, or F = π/(2√2) c v with v the rms of the
-    /// velocity (\[DenHartog1956\], chapter 8).
+    /// velocity (\[DenHartog1956\], chapter 8). A dead zone takes its half width from a force.
     fn grown_from(&self, kind: &str, values: &[f64], scale: &SiteScale) -> Vec<Vec<f64>> {
-        if !self.resembles().contains(&kind) {
-            return vec![];
-        }
-        let damping = values[0] * scale.damping_n_s_per_m;
-        let friction = PI / (2.0 * SQRT_2) * damping * scale.velocity_m_per_s;
+        let friction = match kind {
+            "damping_error" => {
+                let damping = values[0] * scale.damping_n_s_per_m;
+                PI / (2.0 * SQRT_2) * damping * scale.velocity_m_per_s
+            }
+            "input_dead_zone" => values[0],
+            _ => return vec![],
+        };
         let is_start = friction > 0.0 && friction.is_finite();
         is_start.then(|| vec![friction]).into_iter().collect()
     }

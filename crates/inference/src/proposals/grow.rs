@@ -6,7 +6,7 @@ use simgap_effects::{Effect, Placed};
 use simgap_estimate::{
     Base, Candidate, EstimateError, Start, linearise_at, score_in_place_of, score_outright,
 };
-use simgap_model::{GROUND, Location};
+use simgap_model::{GROUND, InputKind, Location, Model};
 
 use crate::candidate_model::{
     CandidateModel, NominalPrior, add_scored, is_nominal, name, remove, replace,
@@ -146,6 +146,9 @@ impl Search<'_> {
                     let grows = is_alike || smaller.any(|known| *known == kind);
                     return grows.then_some((candidate, *scale));
                 }
+                if drives_member(&self.problem.model, &candidate.at, &old.at) {
+                    return is_alike.then_some((candidate, *scale));
+                }
                 // Of a mass and its spring to the ground, the spring has the sizes.
                 let spring = spring_to_ground(&candidate.at, &old.at)?;
                 Some((candidate, self.space.scale_at(spring)?)).filter(|_| is_alike)
@@ -185,9 +188,41 @@ fn spring_to_ground<'a>(one: &'a Location, other: &'a Location) -> Option<&'a Lo
     }
 }
 
+/// Whether one place is an input that is a force, and the other a member between the mass that it drives and the ground.
+fn drives_member(model: &Model, one: &Location, other: &Location) -> bool {
+    let ((Location::Input(channel), Location::Between(pair))
+    | (Location::Between(pair), Location::Input(channel))) = (one, other)
+    else {
+        return false;
+    };
+    let mut inputs = model.inputs.iter();
+    inputs.any(|input| {
+        let is_force = input.channel == *channel && input.kind == InputKind::Force;
+        is_force && pair.contains(&input.at) && pair.iter().any(|node| node == GROUND)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_input_drives_the_members_of_its_mass_to_the_ground() {
+        let text = "schema = \"simgap-model/1\"\nname = \"cart\"\n\
+            [[mass]]\nname = \"cart\"\nvalue = 2.0\n[[mass]]\nname = \"load\"\nvalue = 1.0\n\
+            [[damper]]\nname = \"c\"\nbetween = [\"cart\", \"ground\"]\ndamping = 3.0\n\
+            [[spring]]\nname = \"k\"\nbetween = [\"cart\", \"load\"]\nstiffness = 50.0\n\
+            [[input]]\nchannel = \"u\"\nkind = \"force\"\nat = \"cart\"\n\
+            [[output]]\nchannel = \"v\"\nkind = \"velocity\"\nat = \"load\"\n";
+        let model = Model::from_toml(text).unwrap();
+        let drive = Location::Input("u".into());
+        let between = |a: &str, b: &str| Location::Between([a.into(), b.into()]);
+        let drives = |at: &Location| drives_member(&model, &drive, at);
+        assert!(drives(&between("ground", "cart")));
+        assert!(drives_member(&model, &between("cart", GROUND), &drive));
+        assert!(!drives(&between("cart", "load")) && !drives(&between("load", GROUND)));
+        assert!(!drives(&Location::Mass("cart".into())));
+    }
 
     #[test]
     fn of_a_mass_and_its_spring_to_the_ground_the_spring_has_the_sizes() {
