@@ -355,13 +355,14 @@ fn the_sentences_hold(reader: &mut Reader) {
         low < 7.0 && 7.0 < high && high - low < 1.0,
         "{low} to {high}"
     );
-    // The data do not tell the two levels of the richer law apart: both may be what is in the file, and neither is above it by much. It predicts
-    // hardly better.
-    let levels = [interval(&doubt, 0), interval(&doubt, 1)];
-    let holds_seven = |[low, high]: [f64; 2]| low < 7.0 && 7.0 < high;
-    assert!(levels.into_iter().all(holds_seven), "{levels:?}");
-    let [_, [_, breakaway]] = levels;
-    assert!(breakaway < 7.5, "{levels:?}");
+    // The data do not tell the two levels of the richer law apart: that at rest is what is in the file, and that at speeds far above the
+    // motion may be the same. It predicts hardly better.
+    let [[_, sliding], [low, high]] = [interval(&doubt, 0), interval(&doubt, 1)];
+    assert!(
+        low < 7.0 && 7.0 < high && high < 7.5,
+        "at rest {low} to {high}"
+    );
+    assert!(low < sliding, "up to {sliding}, at rest from {low}");
     let of = |d: &serde_json::Value, key: &str| d["gap"][key].as_f64().unwrap();
     assert!(of(&doubt, "corrected") > 0.95 * of(&answer, "corrected"));
     let gap = |key: &str| of(&answer, key);
