@@ -173,7 +173,7 @@ impl Search<'_> {
                 }
             }
         }
-        // Of effects that can stand for each other the one goes without which more is left.
+        // Of effects that can stand for each other the one goes without which the rest is likeliest.
         Ok(asked.likeliest(&smaller))
     }
 }

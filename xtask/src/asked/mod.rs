@@ -21,6 +21,20 @@ const TICKS_PER_S: f64 = 100.0;
 /// How often the process is looked at.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// How the program is asked.
+#[derive(clap::Args, Debug)]
+pub struct AskingArgs {
+    /// Cases at a time
+    #[arg(long, default_value_t = 2)]
+    pub(crate) jobs: usize,
+    /// The program that diagnoses
+    #[arg(long, value_name = "FILE", default_value = "target/debug/simgap")]
+    pub(crate) program: PathBuf,
+    /// Score the answers that exist, ask for none
+    #[arg(long)]
+    pub(crate) score_only: bool,
+}
+
 /// A case that is asked about.
 pub(crate) struct Asked<'a> {
     /// The program that diagnoses.

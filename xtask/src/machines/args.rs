@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::asked::AskingArgs;
+
 /// Arguments of `cargo xtask machines`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
@@ -20,15 +22,8 @@ pub struct Args {
     /// Only machines whose name holds this
     #[arg(long, value_name = "TEXT")]
     pub(super) only: Option<String>,
-    /// Cases at a time
-    #[arg(long, default_value_t = 2)]
-    pub(super) jobs: usize,
-    /// The program that diagnoses
-    #[arg(long, value_name = "FILE", default_value = "target/debug/simgap")]
-    pub(super) program: PathBuf,
-    /// Score the answers that are there, ask for none
-    #[arg(long)]
-    pub(super) score_only: bool,
+    #[command(flatten)]
+    pub(super) asking: AskingArgs,
     /// Write the page docs/real-machines.md and the kinds that are named, answers.json beside the machines
     #[arg(long, conflicts_with_all = ["draws", "only", "check"])]
     pub(super) write: bool,

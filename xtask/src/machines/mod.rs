@@ -44,7 +44,7 @@ pub fn run(args: &Args) -> Result<String, MachinesError> {
         })
         .collect();
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.jobs.max(1))
+        .num_threads(args.asking.jobs.max(1))
         .build()?;
     let cases: Result<Vec<Option<Case>>, MachinesError> = pool.install(|| {
         let each = draws.par_iter().with_max_len(1);
@@ -102,15 +102,15 @@ fn case(args: &Args, machine: &str, draw: Option<usize>) -> Result<Option<Case>,
         }
     };
     let asked = Asked {
-        program: &args.program,
+        program: &args.asking.program,
         folder: &folder,
         out: &args.out.join("answers").join(&name),
         mend: truth.mend,
     };
-    if !args.score_only {
+    if !args.asking.score_only {
         asked.forget()?;
     }
-    let answer = asked.answer(args.score_only)?;
+    let answer = asked.answer(args.asking.score_only)?;
     Ok(answer.map(|answer| Case {
         name,
         truth,

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::asked::AskingArgs;
+
 /// Arguments of `cargo xtask rigs`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
@@ -20,15 +22,8 @@ pub struct Args {
     /// Only cases with this kind
     #[arg(long)]
     pub(super) kind: Option<String>,
-    /// Cases at a time
-    #[arg(long, default_value_t = 2)]
-    pub(super) jobs: usize,
-    /// The program that diagnoses
-    #[arg(long, value_name = "FILE", default_value = "target/debug/simgap")]
-    pub(super) program: PathBuf,
-    /// Score the answers that exist, ask for none
-    #[arg(long)]
-    pub(super) score_only: bool,
+    #[command(flatten)]
+    pub(super) asking: AskingArgs,
     /// Draw the cases and ask for nothing
     #[arg(long)]
     pub(super) draw_only: bool,

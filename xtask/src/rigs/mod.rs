@@ -40,7 +40,7 @@ fn filter(args: &Args) -> Result<Filter, RigsError> {
 pub fn run(args: &Args) -> Result<String, RigsError> {
     let filter = filter(args)?;
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.jobs.max(1))
+        .num_threads(args.asking.jobs.max(1))
         .build()?;
     fs::create_dir_all(&args.out).map_err(at(&args.out))?;
     let truths = Mutex::new(Vec::new());
@@ -54,12 +54,12 @@ pub fn run(args: &Args) -> Result<String, RigsError> {
             let answer = match args.draw_only {
                 true => None,
                 false => Asked {
-                    program: &args.program,
+                    program: &args.asking.program,
                     folder: &folder,
                     out: &args.out.join("answers").join(&truth.name),
                     mend: false,
                 }
-                .answer(args.score_only)?,
+                .answer(args.asking.score_only)?,
             };
             Ok((truth, answer))
         };
