@@ -25,7 +25,7 @@ pub struct Args {
     #[command(flatten)]
     pub(super) asking: AskingArgs,
     /// Write the page docs/real-machines.md and the kinds that are named, answers.json beside the machines
-    #[arg(long, conflicts_with_all = ["draws", "only", "check"])]
+    #[arg(long, conflicts_with_all = ["root", "draws", "only", "check"])]
     pub(super) write: bool,
     /// Fail where other kinds are named than answers.json says
     #[arg(long, conflicts_with = "draws")]

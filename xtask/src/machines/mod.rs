@@ -65,7 +65,10 @@ pub fn run(args: &Args) -> Result<String, MachinesError> {
         let differ: Vec<String> = kinds(&cases)
             .iter()
             .filter(|(name, kinds)| known.get(*name) != Some(kinds))
-            .map(|(name, kinds)| format!("{name}: {:?}, was {kinds:?}", known.get(name)))
+            .map(|(name, kinds)| match known.get(name) {
+                Some(before) => format!("{name}: {kinds}, was {before}"),
+                None => format!("{name}: {kinds}, not in {}", golden.display()),
+            })
             .collect();
         if !differ.is_empty() {
             return Err(MachinesError::Differ(differ.join("\n")));

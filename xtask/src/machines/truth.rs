@@ -1,5 +1,7 @@
 //! What is known of a machine, and whether an answer says so.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 use simgap_rigs::{Answer, Diagnosis};
 
@@ -113,6 +115,12 @@ impl Kinds {
             status: diagnosis.verdict.status.clone(),
             kinds: effects.map(|effect| effect.kind.clone()).collect(),
         }
+    }
+}
+
+impl fmt::Display for Kinds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({})", self.status, self.kinds.join(", "))
     }
 }
 
