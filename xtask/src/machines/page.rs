@@ -22,12 +22,9 @@ impl Case {
 
     /// Whether another cause is named first, and surely.
     fn is_surely_wrong(&self) -> bool {
-        let first = self
-            .answer
-            .diagnosis
-            .iter()
-            .flat_map(|d| &d.verdict.effects);
-        let probability = first.take(1).filter_map(|effect| effect.probability).next();
+        let verdict = self.answer.diagnosis.as_ref().map(|d| &d.verdict);
+        let first = verdict.and_then(|verdict| verdict.effects.first());
+        let probability = first.and_then(|effect| effect.probability);
         self.judged() == Judged::Wrong && probability.is_some_and(|p| p >= SURE)
     }
 
@@ -87,12 +84,8 @@ pub(super) fn lines(cases: &[Case]) -> String {
          |---|---|---|---|---|---|\n",
     );
     for case in cases {
-        let gap = case
-            .answer
-            .diagnosis
-            .as_ref()
-            .map(|d| d.gap)
-            .unwrap_or_default();
+        let diagnosis = case.answer.diagnosis.as_ref();
+        let gap = diagnosis.map(|d| d.gap).unwrap_or_default();
         let known = match case.truth.accepted.is_empty() {
             true => "nothing".into(),
             false => case.truth.accepted.join(" or "),
@@ -115,14 +108,9 @@ pub(super) fn lines(cases: &[Case]) -> String {
 
 /// What the machines are.
 fn sources(cases: &[Case]) -> String {
-    let each = cases.iter().map(|case| {
-        let Truth {
-            cause,
-            source,
-            licence,
-            ..
-        } = &case.truth;
-        format!("- **{}** ({source}; {licence}): {cause}.\n", case.name)
+    let each = cases.iter().map(|Case { name, truth, .. }| {
+        let (source, licence, cause) = (&truth.source, &truth.licence, &truth.cause);
+        format!("- **{name}** ({source}; {licence}): {cause}.\n")
     });
     each.collect()
 }
