@@ -314,3 +314,22 @@ proptest! {
         }
     }
 }
+
+/// Within the travel of a record it yields, or slides; beyond that nothing is seen of the loop.
+#[test]
+fn verify_what_never_yields_is_no_hysteresis_and_what_never_slides_no_friction() {
+    let scale = common::scale();
+    let travel = scale.travel_m;
+    let yields = |at: f64| effect("hysteresis").has_support(&[100.0, at, 0.5, 1.0, 0.0], &scale);
+    let slides = |at: f64| effect("presliding_friction").has_support(&[3.0, at, 0.0, 0.0], &scale);
+    assert!(yields(travel) && slides(travel));
+    assert!(!yields(1.01 * travel) && !slides(1.01 * travel));
+    for kind in ["hysteresis", "presliding_friction"] {
+        let starts = effect(kind).starts(&scale);
+        assert!(
+            starts
+                .iter()
+                .all(|values| effect(kind).has_support(values, &scale))
+        );
+    }
+}

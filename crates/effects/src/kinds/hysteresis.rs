@@ -205,6 +205,11 @@ impl Effect for Hysteresis {
         starts(|yields_at| 0.1 * scale.force_n / yields_at, scale)
     }
 
+    /// It yields along the travel of a record: short of that there is no loop, and a spring with another origin in each record is none.
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
+        values[1] <= scale.travel_m
+    }
+
     /// Short of the yield displacement it is a spring.
     fn turns_into(&self) -> &'static [&'static str] {
         &["linear_stiffness"]

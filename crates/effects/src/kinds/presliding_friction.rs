@@ -138,6 +138,11 @@ impl Effect for PreslidingFriction {
         &["coulomb_friction"]
     }
 
+    /// It slides along the travel of a record: what never does is a spring with another origin in each record.
+    fn has_support(&self, values: &[f64], scale: &SiteScale) -> bool {
+        values[1] <= scale.travel_m
+    }
+
     /// Short of the presliding displacement it is a spring.
     fn turns_into(&self) -> &'static [&'static str] {
         &["linear_stiffness"]
