@@ -10,5 +10,6 @@ mod mold_records;
 pub mod reproduce;
 pub mod rigs;
 mod slide_records;
+pub mod stability;
 pub mod tidy;
 pub mod tutorial_records;

@@ -4,7 +4,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use xtask::{
-    blind_check, demo_records, effects_docs, machines, reproduce, rigs, tidy, tutorial_records,
+    blind_check, demo_records, effects_docs, machines, reproduce, rigs, stability, tidy,
+    tutorial_records,
 };
 
 #[derive(Parser)]
@@ -29,6 +30,8 @@ enum Task {
     Rigs(rigs::Args),
     /// Have the program diagnose real machines whose cause is known, and score the answers
     Machines(machines::Args),
+    /// Whether generated machines get the same answer whatever their noise and the order of their records
+    Stability(stability::Args),
     /// Write docs/effects.md from the catalogue of effects
     EffectsDocs(effects_docs::Args),
     /// Make the logger files that docs/tutorial.md works with
@@ -46,6 +49,7 @@ fn main() -> ExitCode {
         Task::BlindWorker(args) => return blind_check::worker_main(&args),
         Task::Rigs(args) => return told(rigs::run(&args)),
         Task::Machines(args) => return told(machines::run(&args)),
+        Task::Stability(args) => return told(stability::run(&args)),
         Task::EffectsDocs(args) => return finish(effects_docs::run(&args)),
         Task::TutorialRecords(args) => return finish(tutorial_records::run(&args)),
         Task::Tidy => return finish(tidy::run()),

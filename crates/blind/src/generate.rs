@@ -46,11 +46,40 @@ pub fn generate(
     recipe: &Recipe,
     level: Level,
 ) -> Result<Case, BlindError> {
+    redraw(seed, number, recipe, level, 0)
+}
+
+/// The same machine with the same cause, moved in the same way, with other noise for each number of a redraw; zero is [`generate`].
+///
+/// # Errors
+/// As [`generate`].
+pub fn redraw(
+    seed: u64,
+    number: usize,
+    recipe: &Recipe,
+    level: Level,
+    noise: u64,
+) -> Result<Case, BlindError> {
+    let (draft, mut random) = first_draft(seed, number, recipe, level)?;
+    let input_noise = input_noise(&mut random);
+    if noise > 0 {
+        random = Random::of_case(seed, number, ATTEMPTS + noise);
+    }
+    finish(&mut random, number, recipe, &draft, input_noise)
+}
+
+/// The first draft on which the effect matters, and what the rest is drawn from.
+fn first_draft(
+    seed: u64,
+    number: usize,
+    recipe: &Recipe,
+    level: Level,
+) -> Result<(Draft, Random), BlindError> {
     let wanted = wanted(recipe)?;
     for attempt in 0..ATTEMPTS {
         let mut random = Random::of_case(seed, number, attempt);
         if let Some(draft) = draft(&mut random, recipe, &wanted, level)? {
-            return finish(&mut random, number, recipe, &draft);
+            return Ok((draft, random));
         }
     }
     Err(BlindError::NoCase {
@@ -58,6 +87,14 @@ pub fn generate(
         recipe: recipe.to_string(),
         attempts: ATTEMPTS,
     })
+}
+
+/// Noise of the inputs over their standard deviation: most are known exactly.
+fn input_noise(random: &mut Random) -> f64 {
+    match random.chance(0.15) {
+        true => random.log_uniform(0.001, 0.005),
+        false => 0.0,
+    }
 }
 
 /// The effects a recipe names; nominal parameters of [`Recipe::TwoParameters`] are drawn later.
@@ -227,13 +264,9 @@ fn finish(
     number: usize,
     recipe: &Recipe,
     draft: &Draft,
+    input_noise: f64,
 ) -> Result<Case, BlindError> {
     let name = format!("case-{number:04}");
-    let input_noise = if random.chance(0.15) {
-        random.log_uniform(0.001, 0.005)
-    } else {
-        0.0
-    };
     let records = draft
         .benches
         .iter()
@@ -337,24 +370,8 @@ mod tests {
     fn verify_records_are_the_finer_truth_plus_noise() -> Result<(), BlindError> {
         for (number, kind) in KINDS.iter().enumerate() {
             let recipe = Recipe::Kind((*kind).to_string());
-            let mut found = None;
-            for attempt in 0..ATTEMPTS {
-                let mut random = Random::of_case(11, number, attempt);
-                if let Some(draft) =
-                    draft(&mut random, &recipe, &wanted(&recipe)?, Level::Standard)?
-                {
-                    let case = finish(&mut random, number, &recipe, &draft)?;
-                    found = Some((draft, case));
-                    break;
-                }
-            }
-            let Some((draft, case)) = found else {
-                return Err(BlindError::NoCase {
-                    number,
-                    recipe: recipe.to_string(),
-                    attempts: ATTEMPTS,
-                });
-            };
+            let (draft, mut random) = first_draft(11, number, &recipe, Level::Standard)?;
+            let case = finish(&mut random, number, &recipe, &draft, 0.0)?;
             // Twice as finely as the records were made.
             let finer = outputs(&draft, &draft.all(), 2)?;
             let records = case.train.iter().chain(&case.check);
@@ -373,6 +390,23 @@ mod tests {
                 }
             }
         }
+        Ok(())
+    }
+
+    #[test]
+    fn verify_a_redraw_differs_in_its_noise_alone() -> Result<(), BlindError> {
+        let recipe = Recipe::Kind("cubic_stiffness".into());
+        let of = |noise| redraw(3, 4, &recipe, Level::Standard, noise);
+        let (first, again, other) = (of(0)?, of(1)?, of(2)?);
+        assert_eq!(first.truth, generate(3, 4, &recipe, Level::Standard)?.truth);
+        assert_eq!((&first.truth, &first.model), (&again.truth, &again.model));
+        let output = &first.model.outputs[0].channel;
+        let measured = |case: &Case| -> Result<Vec<f64>, BlindError> {
+            Ok(case.train[0].require(output)?.values.clone())
+        };
+        assert_ne!(measured(&first)?, measured(&again)?);
+        assert_ne!(measured(&again)?, measured(&other)?);
+        assert_eq!(measured(&again)?, measured(&of(1)?)?);
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Cases whose effect is withheld from the diagnosis, and their score.
 //!
 //! [`schedule`] lists what a campaign holds, [`generate`] makes one case of it: a plant, its
-//! nominal model, two records to learn from and one to judge by, and the withheld [`Truth`].
+//! nominal model, two records to learn from and one to judge by, and the withheld [`Truth`]; [`redraw`] makes it with other noise.
 //! [`seal()`] lays the truths down before anything is diagnosed, [`open`] takes them up again.
 //! [`score()`] holds an [`Answer`] against a truth; [`Totals`] sums up a campaign.
 //!
@@ -56,7 +56,7 @@ pub use case::{Case, Equivalent, Hidden, Status, Truth};
 pub use closing::{Closing, Signals, gap_to};
 pub use error::BlindError;
 pub use foreign::foreign_effects;
-pub use generate::generate;
+pub use generate::{generate, redraw};
 pub use level::Level;
 pub use outcome::{Outcome, Verdict};
 pub use recipe::{Recipe, drawn_kinds, schedule};

@@ -31,6 +31,13 @@ impl Decision {
         &self.start
     }
 
+    /// Nothing is named; a free law may stand for the cause, or else the set without effects.
+    fn say_unknown(&mut self, base: &CandidateModel) {
+        self.status = Status::Unknown;
+        let law = self.other.law.as_ref();
+        self.start = law.map_or(&base.fit, |law| &law.fit).estimate.clone();
+    }
+
     /// The places of the effects as they are told: what the model lacks comes before parameters of it that are off besides, unless it
     /// closes no share of the gap that counts; then what explains most.
     pub(crate) fn order(&self) -> Vec<usize> {
@@ -75,14 +82,14 @@ pub(crate) fn decide(
         to_explain: gap.to_explain(),
         other,
     };
-    // A gap of which the empty set leaves a share that counts is no noise.
-    let nothing_explains = best.effects().is_empty() && decision.other.left > RELEVANT_SHARE;
-    if decision.other.probability > LIKELIER_THAN_NOT || nothing_explains {
-        decision.status = Status::Unknown;
-        let law = decision.other.law.as_ref();
-        decision.start = law.map_or(&base.fit, |law| &law.fit).estimate.clone();
+    if decision.other.probability > LIKELIER_THAN_NOT {
+        decision.say_unknown(&base);
     } else if best.effects().is_empty() {
         small_errors(search, first, &mut decision)?;
+        // A gap of which parameters within what the model states leave a share that counts is no noise.
+        if decision.status == Status::None && decision.other.left > RELEVANT_SHARE {
+            decision.say_unknown(&base);
+        }
     } else if are_parameters(best.effects().iter()) {
         decision.status = Status::Parameters;
     } else {

@@ -101,6 +101,14 @@ pub(crate) fn closed(nominal: f64, corrected: f64, floor: f64) -> f64 {
     }
 }
 
+impl Gap {
+    /// What [`Gap::closed`] is where nominal parameters are re-estimated and no effect is added.
+    #[must_use]
+    pub fn closed_by_parameters(&self) -> f64 {
+        closed(self.nominal, self.recalibrated, self.noise_floor)
+    }
+}
+
 /// The gap of the predictions by the model as given, with re-estimated parameters and corrected. `input_noise` is what the noise of the
 /// inputs does.
 pub(crate) fn gap(

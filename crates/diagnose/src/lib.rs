@@ -88,5 +88,5 @@ pub use outcome::NominalEstimate;
 pub use pipeline::{Outcome, Progress, Request, diagnose};
 pub use sets::{FittedEffect, FittedSet};
 pub use simgap_estimate::Cancel;
-pub use simgap_inference::LIKELIER_THAN_NOT;
 pub use simgap_inference::Stage;
+pub use simgap_inference::{LIKELIER_THAN_NOT, RELEVANT_SHARE};

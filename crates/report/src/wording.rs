@@ -1,6 +1,6 @@
 //! Catalogue names, places and verdicts in plain words, shared by the page and the summary.
 
-use simgap_diagnose::{Diagnosis, LIKELIER_THAN_NOT, NamedEffect, Status};
+use simgap_diagnose::{Diagnosis, Gap, LIKELIER_THAN_NOT, NamedEffect, RELEVANT_SHARE, Status};
 use simgap_model::Location;
 
 use crate::number::{percent, ratio};
@@ -150,6 +150,9 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
             "The main cause of the gap of {} is likelier outside the catalogue than in it; nothing is blamed.",
             ratio(gap.nominal)
         ),
+        Status::Parameters if !effects.is_empty() && !diagnosis.verdict.complete => {
+            explains(effects, gap.closed) + "."
+        }
         Status::Parameters if effects.is_empty() => {
             "Re-estimating the model's own parameters closes the gap; no effect is missing."
                 .to_owned()
@@ -158,7 +161,16 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
             explains(effects, gap.closed) + "; no effect is missing from the model."
         }
         Status::Effect if effects.is_empty() => "An effect is missing from the model.".to_owned(),
-        Status::Effect => explains(effects, gap.closed) + ".",
+        Status::Effect => explains(effects, gap.closed) + &by_parameters(gap) + ".",
+    }
+}
+
+/// What of it no effect was needed for, where that counts.
+fn by_parameters(gap: &Gap) -> String {
+    let alone = gap.closed_by_parameters();
+    match alone >= RELEVANT_SHARE && gap.closed >= 0.0 {
+        true => format!("; re-estimated parameters alone explain {}", percent(alone)),
+        false => String::new(),
     }
 }
 

@@ -1,6 +1,8 @@
 //! The program is asked in a process of its own, with a limit of time.
 
 mod error;
+mod kinds;
+mod record;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,6 +13,8 @@ use simgap_rigs::{Answer, Diagnosis};
 
 pub use error::AskedError;
 pub(crate) use error::{at, json};
+pub(crate) use kinds::Kinds;
+pub(crate) use record::write_record;
 
 /// Longest time of a processor for one case, s: other work on the machine does not count.
 const LIMIT_S: f64 = 120.0;

@@ -6,12 +6,11 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use simgap_blind::{Case, SealedCase, generate, seal, sha256};
-use simgap_model::Model;
-use simgap_record::{Record, write_csv_atomic};
 
 use super::BlindCheckError;
 use super::files::{CHECK, MODEL, Places, TRAIN, at, read, write};
 use super::plan::Planned;
+use crate::asked::write_record;
 
 /// The truths of a campaign as text, and its digest.
 pub(super) struct Sealed {
@@ -58,20 +57,6 @@ fn write_case(folder: &Path, case: &Case) -> Result<BTreeMap<String, String>, Bl
         write_record(&folder.join(file), &case.model, record)?;
     }
     digests(folder)
-}
-
-/// Name and unit of every column, and the fewest digits that read back as the same double.
-fn write_record(path: &Path, model: &Model, record: &Record) -> Result<(), BlindCheckError> {
-    let named = model.inputs.iter().map(|input| &input.channel);
-    let named = named.chain(model.outputs.iter().map(|output| &output.channel));
-    let channels = named
-        .map(|name| record.require(name))
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut headers = vec!["t [s]".to_string()];
-    headers.extend(channels.iter().map(|c| format!("{} [{}]", c.name, c.unit)));
-    let mut columns = vec![record.time_s()];
-    columns.extend(channels.iter().map(|c| c.values.as_slice()));
-    Ok(write_csv_atomic(path, &headers, &columns)?)
 }
 
 /// Digest of each file of a case.

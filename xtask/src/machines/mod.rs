@@ -12,11 +12,11 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::asked::{Asked, at, json, parse};
+use crate::asked::{Asked, Kinds, at, json, parse};
 pub use args::Args;
 pub use error::MachinesError;
 use page::Case;
-use truth::{Kinds, Truth};
+use truth::Truth;
 
 /// The page that `--write` writes.
 const PAGE: &str = "docs/real-machines.md";

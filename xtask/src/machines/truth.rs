@@ -1,9 +1,7 @@
 //! What is known of a machine, and whether an answer says so.
 
-use std::fmt;
-
-use serde::{Deserialize, Serialize};
-use simgap_rigs::{Answer, Diagnosis};
+use serde::Deserialize;
+use simgap_rigs::Answer;
 
 /// `truth.json`.
 #[derive(Debug, Clone, Deserialize)]
@@ -92,35 +90,6 @@ impl Truth {
         } else {
             Judged::Wrong
         }
-    }
-}
-
-/// What is said, without numbers: status and kinds, in their order.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Kinds {
-    status: String,
-    kinds: Vec<String>,
-}
-
-impl Kinds {
-    pub(super) fn of(diagnosis: Option<&Diagnosis>) -> Kinds {
-        let Some(diagnosis) = diagnosis else {
-            return Kinds {
-                status: "no answer".into(),
-                kinds: vec![],
-            };
-        };
-        let effects = diagnosis.verdict.effects.iter();
-        Kinds {
-            status: diagnosis.verdict.status.clone(),
-            kinds: effects.map(|effect| effect.kind.clone()).collect(),
-        }
-    }
-}
-
-impl fmt::Display for Kinds {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} ({})", self.status, self.kinds.join(", "))
     }
 }
 
