@@ -150,16 +150,14 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
             "The main cause of the gap of {} is likelier outside the catalogue than in it; nothing is blamed.",
             ratio(gap.nominal)
         ),
-        Status::Parameters if !effects.is_empty() && !diagnosis.verdict.complete => {
-            explains(effects, gap.closed) + "."
-        }
         Status::Parameters if effects.is_empty() => {
             "Re-estimating the model's own parameters closes the gap; no effect is missing."
                 .to_owned()
         }
-        Status::Parameters => {
+        Status::Parameters if diagnosis.verdict.complete => {
             explains(effects, gap.closed) + "; no effect is missing from the model."
         }
+        Status::Parameters => explains(effects, gap.closed) + ".",
         Status::Effect if effects.is_empty() => "An effect is missing from the model.".to_owned(),
         Status::Effect => explains(effects, gap.closed) + &by_parameters(gap) + ".",
     }

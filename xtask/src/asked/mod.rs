@@ -75,8 +75,16 @@ impl Asked<'_> {
         }))
     }
 
+    /// The answer, asked for anew whatever an earlier run left, unless only old ones count.
+    pub(crate) fn answer_anew(&self, only_old: bool) -> Result<Option<Answer>, AskedError> {
+        if !only_old {
+            self.forget()?;
+        }
+        self.answer(only_old)
+    }
+
     /// Forgets an old answer.
-    pub(crate) fn forget(&self) -> Result<(), AskedError> {
+    fn forget(&self) -> Result<(), AskedError> {
         match self.out.exists() {
             true => fs::remove_dir_all(self.out).map_err(at(self.out)),
             false => Ok(()),

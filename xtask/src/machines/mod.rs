@@ -110,10 +110,7 @@ fn case(args: &Args, machine: &str, draw: Option<usize>) -> Result<Option<Case>,
         out: &args.out.join("answers").join(&name),
         mend: truth.mend,
     };
-    if !args.asking.score_only {
-        asked.forget()?;
-    }
-    let answer = asked.answer(args.asking.score_only)?;
+    let answer = asked.answer_anew(args.asking.score_only)?;
     Ok(answer.map(|answer| Case {
         name,
         truth,

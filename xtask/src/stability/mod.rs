@@ -10,7 +10,7 @@ mod verdicts;
 
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rayon::prelude::*;
 use simgap_blind::{Level, Recipe, redraw, schedule};
@@ -62,7 +62,7 @@ fn answer(
         out: &args.out.join("answers").join(&name),
         mend: false,
     };
-    let answer = asked.answer(args.asking.score_only)?;
+    let answer = asked.answer_anew(args.asking.score_only)?;
     Ok(answer.map(|answer| Said::of(answer.diagnosis.as_ref())))
 }
 
@@ -77,14 +77,12 @@ fn draw(
     fs::create_dir_all(folder).map_err(at(folder))?;
     let path = folder.join("model.toml");
     fs::write(&path, case.model.to_toml()?).map_err(at(&path))?;
-    let in_order = noise.is_multiple_of(2);
-    for (place, record) in case.train.iter().enumerate() {
-        let place = if in_order {
-            place
-        } else {
-            case.train.len() - 1 - place
-        };
-        let path: PathBuf = folder.join(format!("train-{}.csv", place + 1));
+    let mut train = case.train;
+    if !noise.is_multiple_of(2) {
+        train.reverse();
+    }
+    for (place, record) in train.iter().enumerate() {
+        let path = folder.join(format!("train-{}.csv", place + 1));
         write_record(&path, &case.model, record)?;
     }
     if let Some(check) = case.check.first() {
