@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
 use simgap_inference::noise_model::{NOISE_KNOWN, accuracy, accuracy_of_steps, input_noise};
-use simgap_inference::{CandidateModel, LIKELIER_THAN_NOT, RELEVANT_SHARE, other_by};
+use simgap_inference::{CandidateModel, LIKELIER_THAN_NOT, RELEVANT_SHARE, is_a_cause, other_by};
 use simgap_simulate::{MemberPath, Run, substeps_for};
 
 use crate::excerpt::excerpts;
@@ -92,11 +92,13 @@ impl<'a> Check<'a> {
         })
     }
 
-    /// What an answer leaves: `placed` on the model, as it was fitted to the training records.
+    /// What an answer leaves: `placed` on the model, as it was fitted to the training records. Where the answer `is_as_given`, that the
+    /// model needs no change, the model as given speaks for it beside re-estimated parameters.
     pub(crate) fn of(
         &self,
         (estimate, options): (&Fit, &FitOptions),
         placed: &[Placed],
+        is_as_given: bool,
     ) -> Result<Checked, EstimateError> {
         let known = &self.recalibrated.estimate.nominal[..];
         let predictions = [&[], known, placed]
@@ -123,7 +125,7 @@ impl<'a> Check<'a> {
         };
         let of_simulation = self.accuracy(placed, &predictions[2])?;
         // What is left of each channel above all noise, over its standard deviation.
-        let above_noise = |of: fn(&ChannelGap) -> f64| -> Vec<f64> {
+        let above_noise = |of: &dyn Fn(&ChannelGap) -> f64| -> Vec<f64> {
             let channels = gap.channels.iter().zip(&of_simulation);
             channels
                 .map(|(channel, accuracy)| {
@@ -135,7 +137,11 @@ impl<'a> Check<'a> {
                 })
                 .collect()
         };
-        let left_of_channels = above_noise(|channel| channel.corrected);
+        let speaks_as_given = is_as_given && gap.nominal < gap.corrected;
+        let left_of_channels = above_noise(&|channel| match speaks_as_given {
+            true => channel.nominal,
+            false => channel.corrected,
+        });
         let left = total(&left_of_channels);
         let nominal = gap.nominal.max(f64::MIN_POSITIVE);
         // What is named beside parameters is to explain what these leave, and closes some of that where a check record can show it.
@@ -143,16 +149,19 @@ impl<'a> Check<'a> {
         let share = if are_parameters { 0.0 } else { RELEVANT_SHARE };
         let (to_explain, without, to_close) = match are_parameters || gap.nominal < gap.recalibrated
         {
-            true => (gap.nominal, &predictions[0], above_noise(|c| c.nominal)),
+            true => (gap.nominal, &predictions[0], above_noise(&|c| c.nominal)),
             false => (
                 gap.recalibrated,
                 &predictions[1],
-                above_noise(|c| c.recalibrated),
+                above_noise(&|c| c.recalibrated),
             ),
         };
         // No less than what noise is known to.
         let to_close = total(&to_close).max((NOISE_KNOWN - 1.0).sqrt() * gap.noise_floor);
-        let is_complete = left <= INCOMPLETE * to_explain;
+        // What moves no output by enough for a name is no cause that parameters alone would lack. A law has to close what is there.
+        let lacks_nothing =
+            are_parameters && !left_of_channels.iter().any(|left| is_a_cause(*left));
+        let is_complete = left <= INCOMPLETE * to_explain || lacks_nothing;
         let std = self.problem.output_std();
         let is_tested = closed_if_true(&std, (without, to_close), &predictions[2]) >= share;
         let mut notes = vec![];

@@ -261,12 +261,13 @@ fn finish<R: Borrow<Record>>(
     progress(Stage::CheckRecords.name());
     let check = Check::new(&prepared.train, &prepared.recalibrated, data.check.clone())?;
     let placed = |estimate: &Fit| -> Vec<Placed> { estimate.estimate.placed().cloned().collect() };
-    let checked = check.of((&estimate, options), &placed(&estimate))?;
+    let is_as_given = decision.status == Status::None;
+    let checked = check.of((&estimate, options), &placed(&estimate), is_as_given)?;
     // What runs away along a check record is no model of it, whatever was measured there.
     let (estimate, checked) = match checked.runs_away() {
         true => {
             let known = prepared.recalibrated.clone();
-            let of_known = check.of((&known, options), &placed(&known))?;
+            let of_known = check.of((&known, options), &placed(&known), is_as_given)?;
             (known, of_known.in_place_of_what_runs_away())
         }
         false => (estimate, checked),

@@ -41,6 +41,7 @@ pub use coincidence::Coincidence;
 pub use gap::{Gap, RELEVANT_SHARE};
 pub use model_posterior::{EffectPosterior, ModelPosterior, Rival, model_posterior};
 pub use model_space::ModelSpace;
+pub use motion::is_a_cause;
 pub use noise_model::NoiseModel;
 pub use other::{FreeLaw, LIKELIER_THAN_NOT, Other, other, other_by};
 pub use proposals::RECALIBRATION_STD;

@@ -147,17 +147,17 @@ impl Search<'_> {
     ) -> Result<Option<usize>, EstimateError> {
         let mut smaller = vec![];
         for i in 0..set.effects().len() {
-            let moved = self.moved(set, i)?;
+            let moves = self.moves_enough(set, i)?;
             let from_here = || self.fit(&remove(&set.fit.estimate, i, self.nominal));
             let known = asked.places.get(&set.key_without(i)).copied();
             let place = match known {
                 Some(known) => known,
                 None => asked.place(from_here()?),
             };
-            let mut is_relevant = self.is_relevant(set, &asked.sets[place], &moved);
+            let mut is_relevant = self.is_relevant(set, &asked.sets[place], moves);
             // A search that ended early may have left it elsewhere.
             if is_relevant && known.is_some() && asked.improve(place, from_here()?) {
-                is_relevant = self.is_relevant(set, &asked.sets[place], &moved);
+                is_relevant = self.is_relevant(set, &asked.sets[place], moves);
             }
             if !is_relevant {
                 smaller.push(place);
@@ -166,7 +166,7 @@ impl Search<'_> {
             // A law beyond a special case of it is held to the same, by what they differ by.
             for special in self.shrink(set, i) {
                 let beyond = motion::between(&set.fit, &special.fit);
-                let is_relevant = self.is_relevant(set, &special, &beyond);
+                let is_relevant = self.is_relevant(set, &special, self.is_enough(&beyond));
                 let place = asked.place(special);
                 if !is_relevant {
                     smaller.push(place);

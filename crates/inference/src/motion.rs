@@ -2,8 +2,8 @@
 
 use simgap_estimate::Fit;
 
-/// Practical relevance: an effect, but for a wrong nominal parameter, is not worth a name that moves every output by less than
-/// this share of its motion, rms.
+/// Practical relevance: an effect, but for a wrong nominal parameter beyond what the model states, is not worth a name that moves every
+/// output by less than this share of its motion, rms.
 const OF_MOTION: f64 = 0.003;
 
 /// What two fits of the same records differ by in each output, rms.
@@ -28,5 +28,11 @@ pub(crate) fn is_enough<'a>(
     motion: &'a [f64],
 ) -> impl Iterator<Item = bool> + 'a {
     let outputs = moved.iter().zip(motion);
-    outputs.map(|(by, motion)| *by > OF_MOTION * motion)
+    outputs.map(|(by, motion)| is_a_cause(by / motion))
+}
+
+/// Whether what is left of an output above all noise, share of its motion, may have a cause that is worth a name.
+#[must_use]
+pub fn is_a_cause(share: f64) -> bool {
+    share > OF_MOTION
 }

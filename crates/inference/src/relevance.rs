@@ -2,7 +2,7 @@
 //!
 //! An effect is not that closes less than [`RELEVANT_SHARE`] of the gap, rms, in every channel, nor one that closes no more in any than
 //! a tenth of what it is rounded by ([`NOISE_KNOWN`]), for rounding follows the motion, nor one that moves no output by enough
-//! ([`motion::is_enough`]), nor one without which no more is left than no set is expected to explain; nor one beside others that
+//! ([`Search::moves_enough`]), nor one without which no more is left than no set is expected to explain; nor one beside others that
 //! explains less than half of what is left above the noise.
 
 use simgap_estimate::{EstimateError, FitOptions, fit};
@@ -27,12 +27,12 @@ impl Search<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// Whether what a set has beyond another is worth a name. `moved` is what the effect moves each output by.
+    /// Whether what a set has beyond another is worth a name; `moves` whether that moves an output by enough.
     pub(crate) fn is_relevant(
         &self,
         with: &CandidateModel,
         without: &CandidateModel,
-        moved: &[f64],
+        moves: bool,
     ) -> bool {
         // Values that no prior holds are no set.
         if without.log_posterior() == f64::NEG_INFINITY {
@@ -47,7 +47,7 @@ impl Search<'_> {
             return true;
         }
         // What comes late in one channel may show in another: where records begin follows the late one.
-        if !motion::is_enough(moved, &self.problem.output_std()).any(|enough| enough) {
+        if !moves {
             return false;
         }
         let noise = self.noise_of(with).into_iter();
@@ -73,23 +73,22 @@ impl Search<'_> {
     pub(crate) fn merely_refines(&self, set: &CandidateModel, other: &CandidateModel) -> bool {
         let known = other.key();
         let mut beyond = set.effects().iter().filter(|p| !known.contains(&name(p)));
-        let moved = match beyond.any(is_nominal) {
-            true => vec![f64::INFINITY; self.gap.len()],
-            false => motion::between(&set.fit, &other.fit),
-        };
+        let moves =
+            beyond.any(is_nominal) || self.is_enough(&motion::between(&set.fit, &other.fit));
         let is_larger = set.effects().len() > other.effects().len();
-        is_larger && !is_bent(other) && !self.is_relevant(set, other, &moved)
+        is_larger && !is_bent(other) && !self.is_relevant(set, other, moves)
     }
 
-    /// What one effect of a set moves each output by, with everything else as it is, rms; without bound of a wrong nominal parameter, which
-    /// is told however little it moves: the others bend where it is kept as given.
-    pub(crate) fn moved(
+    /// Whether one effect of a set, with everything else as it is, moves an output by enough for a name. A wrong nominal parameter does
+    /// however little it moves: the others bend where it is kept as given. Within what the model states none bends, and it is asked of them
+    /// too, for what a simulation misses of a machine goes with its motion, and many samples show a parameter that is off by as much.
+    pub(crate) fn moves_enough(
         &self,
         set: &CandidateModel,
         index: usize,
-    ) -> Result<Vec<f64>, EstimateError> {
-        if is_nominal(&set.effects()[index]) {
-            return Ok(vec![f64::INFINITY; self.gap.len()]);
+    ) -> Result<bool, EstimateError> {
+        if is_nominal(&set.effects()[index]) && !self.is_within_stated() {
+            return Ok(true);
         }
         let held = FitOptions {
             most_steps: 0,
@@ -97,7 +96,12 @@ impl Search<'_> {
         };
         let rest = remove(&set.fit.estimate, index, self.nominal);
         let rest = fit(self.problem, &rest, &held)?;
-        Ok(motion::between(&set.fit, &rest))
+        Ok(self.is_enough(&motion::between(&set.fit, &rest)))
+    }
+
+    /// Whether what moves each output by so much, rms, is enough for a name.
+    pub(crate) fn is_enough(&self, moved: &[f64]) -> bool {
+        motion::is_enough(moved, &self.problem.output_std()).any(|enough| enough)
     }
 }
 

@@ -10,8 +10,8 @@
 //!
 //! in channel c, G the plant from rest. r has the colour of the plant, so an estimate of white noise on the discrepancy
 //! sees the part of it that the plant passes straight on, and no more; a set that smooths the input leaves less of that
-//! part than there is. Of several draws of w the largest r counts in (2): on a plant without a spring it is a random
-//! walk, and one walk is not like another.
+//! part than there is. Of many draws of w the largest r counts in (2): on a plant without a spring it is a random
+//! walk, one walk is not like another, and that of the machine goes further than all of n draws in one of n + 1 records.
 
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, FitOptions, Problem, fit_initial_states};
@@ -28,7 +28,7 @@ const LEAST: f64 = 1e-5;
 /// flat, filtered excitation falls.
 const FALL: [f64; 2] = [2.0, 1.5];
 /// Draws of w for each run.
-const DRAWS: u64 = 6;
+const DRAWS: u64 = 24;
 
 /// What the noise of the inputs does to a channel, in its unit squared.
 #[derive(Debug, Clone, Copy, Default)]

@@ -87,8 +87,8 @@ impl Search<'_> {
         if is_bent(without) && is_nominal(&with.effects()[last]) {
             return Ok(true);
         }
-        let moved = self.moved(with, last)?;
-        Ok(self.is_relevant(with, without, &moved))
+        let moves = self.moves_enough(with, last)?;
+        Ok(self.is_relevant(with, without, moves))
     }
 
     /// Starts of a set with one more effect, each of which pays for itself by its score and moves an output by enough.
@@ -104,7 +104,6 @@ impl Search<'_> {
             let known = 0.5 * values as f64 * (2.0 * score.gain.max(0.0)).ln_1p();
             score.gain + self.space.log_prior_of(effect) - known >= 0.0
         };
-        let std = self.problem.output_std();
         let held = FitOptions {
             most_steps: 0,
             ..self.options.clone()
@@ -112,14 +111,12 @@ impl Search<'_> {
         let mut paying = self.scores(set, linear);
         paying.retain(pays);
         let moving = paying.into_par_iter().filter_map(|score| {
-            // A wrong nominal parameter is told however little it moves.
-            let may_be_small = is_nominal(&score.start);
+            let may_be_small = is_nominal(&score.start) && !self.is_within_stated();
             let start = add_scored(&set.fit.estimate, score);
             // From a start where the plant runs away nothing is promised.
             let with = linear.fit(&start, &held).ok()?;
             let moved = motion::between(&with, &set.fit);
-            let is_worth = may_be_small || motion::is_enough(&moved, &std).any(|enough| enough);
-            is_worth.then_some(start)
+            (may_be_small || self.is_enough(&moved)).then_some(start)
         });
         let mut starts: Vec<Start> = moving.collect();
         let mut asked = BTreeSet::new();
