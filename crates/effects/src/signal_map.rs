@@ -101,6 +101,12 @@ pub(crate) trait Retiming: Send + Sync {
     /// Where on the true signal the i-th sample is taken, in samples.
     fn position(&self, signal: &Sampled<'_>, i: usize) -> f64;
 
+    /// By how many samples all positions lie behind, where that is the same for all.
+    fn behind(&self, signal: &Sampled<'_>) -> Option<f64> {
+        let _ = signal;
+        None
+    }
+
     /// See [`SignalMap::lives_in_single_samples`].
     fn counts_samples(&self) -> bool {
         false
@@ -109,7 +115,10 @@ pub(crate) trait Retiming: Send + Sync {
 
 impl<T: Retiming> SignalMap for T {
     fn apply(&self, signal: Sampled<'_>) -> Vec<f64> {
-        signal.moved(|i| self.position(&signal, i))
+        match self.behind(&signal) {
+            Some(behind) => signal.shifted(behind),
+            None => signal.moved(|i| self.position(&signal, i)),
+        }
     }
 
     fn reach(&self, signal: Sampled<'_>) -> Range<usize> {
@@ -130,6 +139,28 @@ impl Sampled<'_> {
     fn moved(&self, position: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..self.values.len())
             .map(|i| self.at(position(i)))
+            .collect()
+    }
+
+    /// The values so many samples behind each, by [`Sampled::at`], whose weights are the same for all away from the ends.
+    fn shifted(&self, behind: f64) -> Vec<f64> {
+        let len = self.values.len();
+        let whole = behind.ceil().clamp(-(len as f64), len as f64);
+        let weights = weights(BEFORE as f64 + (whole - behind));
+        // The first of the six points of the sample i is i − back.
+        let back = whole as isize + BEFORE as isize;
+        let on_record = |i: isize| i.clamp(0, len as isize) as usize;
+        let start = on_record(back);
+        let end = on_record(len as isize - POINTS as isize + 1 + back).max(start);
+        let at = |i: usize| self.at(i as f64 - behind);
+        let around = self.values.windows(POINTS).skip(on_record(-back));
+        let inside = around
+            .take(end - start)
+            .map(|points| product(points, &weights));
+        (0..start)
+            .map(at)
+            .chain(inside)
+            .chain((end..len).map(at))
             .collect()
     }
 
@@ -165,30 +196,40 @@ impl Sampled<'_> {
             return 0.0;
         };
         let position = position.clamp(0.0, last as f64);
-        if last < 5 {
-            let left = (position.floor() as usize).min(last.saturating_sub(1));
+        if last + 1 < POINTS {
+            let left = (position as usize).min(last.saturating_sub(1));
             let right = (left + 1).min(last);
             let fraction = position - left as f64;
             return self.values[left] + fraction * (self.values[right] - self.values[left]);
         }
-        let first = (position.floor() as usize).saturating_sub(2).min(last - 5);
-        let p = position - first as f64;
-        let d: [f64; 6] = std::array::from_fn(|j| p - j as f64);
-        // Πⱼ≠ᵢ (i − j) for six equidistant points.
-        const DENOMINATOR: [f64; 6] = [-120.0, 24.0, -12.0, 12.0, -24.0, 120.0];
-        let mut sum = 0.0;
-        for i in 0..6 {
-            let mut product = 1.0;
-            for (j, factor) in d.iter().enumerate() {
-                if j != i {
-                    product *= factor;
-                }
-            }
-            // The weight first: at a sample it is exactly 0 or 1.
-            sum += self.values[first + i] * (product / DENOMINATOR[i]);
-        }
-        sum
+        let first = (position as usize)
+            .saturating_sub(BEFORE)
+            .min(last + 1 - POINTS);
+        let weights = weights(position - first as f64);
+        product(&self.values[first..first + POINTS], &weights)
     }
+}
+
+/// Points of an interpolation.
+const POINTS: usize = 6;
+/// Those before the interval, but for the one that begins it.
+const BEFORE: usize = 2;
+
+/// The weights of six points for a position among them, 0 that of the first: at a sample exactly 0 and 1.
+fn weights(p: f64) -> [f64; POINTS] {
+    let d: [f64; POINTS] = std::array::from_fn(|j| p - j as f64);
+    // Πⱼ≠ᵢ (i − j) for six equidistant points.
+    const DENOMINATOR: [f64; POINTS] = [-120.0, 24.0, -12.0, 12.0, -24.0, 120.0];
+    std::array::from_fn(|i| {
+        let others = d.iter().enumerate().filter(|(j, _)| *j != i);
+        others.fold(1.0, |product, (_, factor)| product * factor) / DENOMINATOR[i]
+    })
+}
+
+#[inline(always)]
+fn product(points: &[f64], weights: &[f64; POINTS]) -> f64 {
+    let points = points.iter().zip(weights);
+    points.fold(0.0, |sum, (value, weight)| sum + value * weight)
 }
 
 #[cfg(test)]
@@ -206,6 +247,22 @@ mod tests {
         }
         assert_eq!(signal.at(-3.0), values[0]);
         assert_eq!(signal.at(30.0), values[11]);
+    }
+
+    #[test]
+    fn verify_a_constant_shift_is_that_of_each_sample() {
+        for len in [1_usize, 4, 6, 7, 40] {
+            let values: Vec<f64> = (0..len).map(|i| (0.4 * i as f64).sin() + 3.0).collect();
+            let signal = Sampled::from_start(&values, 1.0);
+            for behind in [0.0, 0.25, 3.0, 7.6, -0.4, -5.0, -12.3, 39.5, 500.0, -500.0] {
+                let shifted = signal.shifted(behind);
+                let moved = signal.moved(|i| i as f64 - behind);
+                assert_eq!(shifted.len(), len);
+                for (one, other) in shifted.iter().zip(&moved) {
+                    assert!((one - other).abs() < 1e-13, "{len} {behind}: {one} {other}");
+                }
+            }
+        }
     }
 
     /// The remainder of the interpolation, |y⁽⁶⁾| Π|p − j| / 6!, is largest midway between the two

@@ -115,6 +115,10 @@ impl LaneObserver for Sums {
         false
     }
 
+    fn reads_forces(&self) -> bool {
+        false
+    }
+
     #[inline(always)]
     fn observe(&mut self, at: &LaneSnapshot<'_>) {
         let sum = &mut self.0[at.first_set / LANES];

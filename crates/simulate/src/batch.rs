@@ -218,6 +218,10 @@ impl LaneObserver for Recorder<'_> {
         })
     }
 
+    fn reads_forces(&self) -> bool {
+        self.plans.iter().any(OutputPlan::reads_forces)
+    }
+
     #[inline(always)]
     fn observe(&mut self, at: &LaneSnapshot<'_>) {
         let slot = at.sample % CHUNK;

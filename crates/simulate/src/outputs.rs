@@ -95,16 +95,8 @@ impl OutputPlan {
     /// Difference between the two nodes.
     #[inline(always)]
     fn across_lanes(&self, dofs: &[Pack], of_base: impl Fn(usize) -> Pack) -> Pack {
-        let value = |node| match node {
-            Node::Ground | Node::Port(_) => Pack::ZERO,
-            Node::Dof(i) => dofs[i],
-            Node::Base(i) => of_base(i),
-            Node::Point(point) => {
-                let (heave, roll) = (&dofs[point.heave], &dofs[point.roll]);
-                Pack::of(|l| heave.0[l] + point.arm_m() * roll.0[l])
-            }
-        };
-        let (a, b) = (value(self.a), value(self.b));
+        let a = value_in_lanes(self.a, dofs, &of_base);
+        let b = value_in_lanes(self.b, dofs, &of_base);
         Pack::of(|l| a.0[l] - b.0[l])
     }
 
@@ -121,6 +113,11 @@ impl OutputPlan {
 
     pub(crate) fn needs_acceleration(&self) -> bool {
         self.read == Read::Acceleration
+    }
+
+    /// Whether what elements carry is read; an acceleration needs it beside that.
+    pub(crate) fn reads_forces(&self) -> bool {
+        !self.elements.is_empty()
     }
 
     pub(crate) fn read(
@@ -144,6 +141,20 @@ impl OutputPlan {
                     .sum();
                 members + on_top + self.offset
             }
+        }
+    }
+}
+
+/// Value at a node. Not a closure: one that is called twice is not inlined, and its value goes through memory.
+#[inline(always)]
+fn value_in_lanes(node: Node, dofs: &[Pack], of_base: impl Fn(usize) -> Pack) -> Pack {
+    match node {
+        Node::Ground | Node::Port(_) => Pack::ZERO,
+        Node::Dof(i) => dofs[i],
+        Node::Base(i) => of_base(i),
+        Node::Point(point) => {
+            let (heave, roll) = (&dofs[point.heave], &dofs[point.roll]);
+            Pack::of(|l| heave.0[l] + point.arm_m() * roll.0[l])
         }
     }
 }

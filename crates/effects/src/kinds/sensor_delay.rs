@@ -33,6 +33,10 @@ impl Retiming for Delay {
     fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
         i as f64 - self.delay_s / signal.time_step_s
     }
+
+    fn behind(&self, signal: &Sampled<'_>) -> Option<f64> {
+        Some(self.delay_s / signal.time_step_s)
+    }
 }
 
 impl Effect for SensorDelay {

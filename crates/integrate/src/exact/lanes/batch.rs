@@ -24,7 +24,7 @@ pub struct LaneSnapshot<'a> {
     pub velocity: &'a [Pack],
     /// ẍ, m/s²; length n where [`LaneObserver::needs_acceleration`], else empty.
     pub acceleration: &'a [Pack],
-    /// Force each element carries, N.
+    /// Force each element carries, N, where [`LaneObserver::reads_forces`] or [`LaneObserver::needs_acceleration`].
     pub element_force: &'a [Pack],
     /// Displacement of each base node, m.
     pub base_displacement: &'a [Pack],
@@ -41,6 +41,11 @@ pub trait LaneObserver {
     /// where nobody reads it and stays where it was.
     fn reads_displacement(&self, coordinate: usize) -> bool {
         let _ = coordinate;
+        true
+    }
+
+    /// Whether it looks at what the elements carry. Where nobody does, it is not added up at every sample and stays at zero.
+    fn reads_forces(&self) -> bool {
         true
     }
 
@@ -228,7 +233,7 @@ fn march<S: Simd, R: Row>(simd: S, mut lanes: Lanes<'_>, zero: R, observer: &mut
     let (mut from, mut to) = (zero.clone(), zero.clone());
     let (mut before, mut after) = (zero.clone(), zero.clone());
     let [mut base_from, mut base_to, mut base] = [(); 3].map(|()| vec![Pack::ZERO; 2 * bases]);
-    let mut seen = Seen::new(&lanes, &zero);
+    let mut seen = Seen::new(&lanes, &zero, observer);
     for sample in 0..lanes.sample_count {
         copy(&mut from, &to);
         if bases > 0 {
@@ -261,11 +266,16 @@ struct Seen<R> {
     net: R,
     acceleration: R,
     carried: Vec<Pack>,
+    needs_acceleration: bool,
+    needs_forces: bool,
 }
 
 impl<R: Row> Seen<R> {
-    fn new(lanes: &Lanes<'_>, zero: &R) -> Seen<R> {
+    fn new(lanes: &Lanes<'_>, zero: &R, observer: &dyn Watch) -> Seen<R> {
+        let needs_acceleration = observer.needs_acceleration();
         Seen {
+            needs_acceleration,
+            needs_forces: needs_acceleration || observer.reads_forces(),
             state: State {
                 displacement: zero.clone(),
                 velocity: zero.clone(),
@@ -287,13 +297,15 @@ impl<R: Row> Seen<R> {
         (force, base): (&R, &[Pack]),
         observer: &mut dyn Watch,
     ) {
-        lanes.block.carried(simd, &mut self.carried);
-        for (i, carried) in self.carried.iter_mut().enumerate() {
-            if lanes.block.spread[i] {
-                lanes.add_beyond_step(simd, [i, sample], (state, base), carried);
+        if self.needs_forces {
+            lanes.block.carried(simd, &mut self.carried);
+            for (i, carried) in self.carried.iter_mut().enumerate() {
+                if lanes.block.spread[i] {
+                    lanes.add_beyond_step(simd, [i, sample], (state, base), carried);
+                }
             }
         }
-        let needs_acceleration = observer.needs_acceleration();
+        let needs_acceleration = self.needs_acceleration;
         if needs_acceleration {
             copy(&mut self.net, force);
             lanes.block.add_to(simd, &self.carried, &mut self.net);
