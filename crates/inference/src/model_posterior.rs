@@ -8,7 +8,8 @@
 //!
 //! A set is an answer if each of its effects closes a share of the gap that is worth a name (*practical
 //! relevance*). One with an effect that closes less stands for what the set without that stands for: no real machine is exactly what
-//! a few laws say, and what refines an answer speaks for it, not for another that explains as much by a larger effect. Effects that can be exchanged within the stated odds cannot
+//! a few laws say, and what refines an answer speaks for it, not for another that explains as much by a larger effect. One that predicts the
+//! same by a wrong nominal parameter, whatever the data, stands for that. Effects that can be exchanged within the stated odds cannot
 //! be told apart; an effect that can be left out within them cannot be told from none, and is not named.
 
 use simgap_effects::{Equivalent, Placed, same_place};
@@ -134,9 +135,29 @@ impl Search<'_> {
         while let Some(index) = asked.next(NEGLIGIBLE) {
             let set = asked.sets[index].clone();
             let smaller = self.without_irrelevant(&set, &mut asked)?;
-            asked.note(index, smaller.unwrap_or(index));
+            let answer = smaller.or_else(|| self.by_everyday_name(&set, &asked));
+            asked.note(index, answer.unwrap_or(index));
         }
         Ok(asked)
+    }
+
+    /// Where a set is that predicts the same whatever the data, with a wrong nominal parameter in the place of another effect: one answer,
+    /// by the name of what is met more often. Between the two no data decide, only how wide the initial states of either are seen.
+    fn by_everyday_name(&self, set: &CandidateModel, asked: &Asked) -> Option<usize> {
+        let others = (0..set.effects().len()).filter(|i| !is_nominal(&set.effects()[*i]));
+        let mut same = others.flat_map(|i| {
+            let model = &self.problem.model;
+            let same = self.space.equivalents(set.effects(), i, model).into_iter();
+            same.filter_map(move |same| {
+                let parameter = self.space.wrong_parameter(same.kind, &same.at)?;
+                let mut key = set.key_without(i);
+                key.push(parameter);
+                key.sort();
+                asked.places.get(&key).copied()
+            })
+        });
+        let most = set.fit.misfit + INDISTINGUISHABLE;
+        same.find(|place| asked.sets[*place].fit.misfit < most)
     }
 
     /// Where the likeliest set is that lacks an irrelevant effect of a set, or has a special case of it; none where all are relevant.

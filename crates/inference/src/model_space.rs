@@ -140,6 +140,16 @@ impl ModelSpace {
         f64::max(all, f64::MIN_POSITIVE)
     }
 
+    /// The name of a wrong nominal parameter of a kind at a place, if it is one that is looked for.
+    pub(crate) fn wrong_parameter(&self, kind: &str, at: &Location) -> Option<String> {
+        let mut candidates = self.candidates.iter().map(|(candidate, _)| candidate);
+        let found = candidates.find(|known| {
+            let is_parameter = known.effect.family() == Family::NominalParameter;
+            is_parameter && known.effect.kind() == kind && same_place(&known.at, at)
+        })?;
+        Some(format!("{kind} {}", found.at))
+    }
+
     /// What is the same thing by another name as the i-th effect of a set, on this plant, whatever the data; of
     /// the kinds that are looked for.
     #[must_use]
