@@ -98,7 +98,12 @@ impl Asked {
 
     /// The likeliest of those.
     pub(crate) fn best(&self) -> Option<&CandidateModel> {
-        self.order().first().map(|i| &self.sets[*i])
+        self.best_place().map(|i| &self.sets[i])
+    }
+
+    /// Where that is.
+    pub(crate) fn best_place(&self) -> Option<usize> {
+        self.order().first().copied()
     }
 
     /// Where they are, likeliest first.

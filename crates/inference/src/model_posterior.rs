@@ -135,8 +135,12 @@ impl Search<'_> {
         while let Some(index) = asked.next(NEGLIGIBLE) {
             let set = asked.sets[index].clone();
             let smaller = self.without_irrelevant(&set, &mut asked)?;
-            let answer = smaller.or_else(|| self.by_everyday_name(&set, &asked));
-            asked.note(index, answer.unwrap_or(index));
+            asked.note(index, smaller.unwrap_or(index));
+        }
+        if let Some(best) = asked.best_place()
+            && let Some(same) = self.by_everyday_name(&asked.sets[best], &asked)
+        {
+            asked.note(best, same);
         }
         Ok(asked)
     }
