@@ -210,10 +210,10 @@ impl Sampled<'_> {
     }
 }
 
-/// Points of an interpolation.
-const POINTS: usize = 6;
-/// Those before the interval, but for the one that begins it.
-const BEFORE: usize = 2;
+/// Points of the polynomial between two samples.
+pub(crate) const POINTS: usize = 6;
+/// Those before the interval.
+pub(crate) const BEFORE: usize = 2;
 
 /// The weights of six points for a position among them, 0 that of the first: at a sample exactly 0 and 1.
 fn weights(p: f64) -> [f64; POINTS] {

@@ -3,8 +3,9 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use simgap_effects::{Family, Placed};
+use simgap_effects::{Effect, Family, Placed};
 use simgap_estimate::{Candidate, Fit, Owner, Score, Start};
+use simgap_model::Location;
 
 /// A fitted set of effects.
 #[derive(Clone)]
@@ -57,6 +58,14 @@ impl CandidateModel {
         key
     }
 
+    /// The key of the set with a candidate in the place of its i-th effect.
+    pub(crate) fn key_with(&self, index: usize, candidate: &Candidate) -> Vec<String> {
+        let mut key = self.key_without(index);
+        key.push(name_of(candidate.effect, &candidate.at));
+        key.sort();
+        key
+    }
+
     /// Whether a candidate makes no sense beside the effects of the set: it is one of them, or one
     /// contains the other at the same place.
     pub(crate) fn rules_out(&self, candidate: &Candidate) -> bool {
@@ -86,7 +95,11 @@ pub fn is_nominal(placed: &Placed) -> bool {
 /// Kind and place, for keys and messages.
 #[must_use]
 pub fn name(placed: &Placed) -> String {
-    format!("{} {}", placed.effect.kind(), placed.at)
+    name_of(placed.effect, &placed.at)
+}
+
+fn name_of(effect: &dyn Effect, at: &Location) -> String {
+    format!("{} {at}", effect.kind())
 }
 
 pub(crate) fn is_of(placed: &Placed, candidate: &Candidate) -> bool {

@@ -6,7 +6,6 @@ use simgap_estimate::{EstimateError, fit};
 use crate::candidate_model::{CandidateModel, is_bent, is_nominal, least, rank};
 use crate::coincidence::coincidence;
 use crate::gap::{Gap, RELEVANT_SHARE, over_noise};
-use crate::motion;
 use crate::noise_model::{
     NOISE_KNOWN, accuracy_of_steps, noise_variance, rounding_variance, stepped,
 };
@@ -89,9 +88,7 @@ impl Search<'_> {
         // An effect that is worth a name moves more than this leaves; of a law, another may leave less.
         let over_noise: Vec<f64> = over_noise(&set.fit.variance, &noise).collect();
         let are_parameters = !set.effects().is_empty() && set.effects().iter().all(is_nominal);
-        let motion = self.problem.output_std();
-        let hides_nothing = motion::is_enough(&over_noise, &motion).all(|enough| !enough);
-        let leaves_little = are_parameters && hides_nothing;
+        let leaves_little = are_parameters && !self.is_enough(&over_noise);
         Ok((leaves_little || leaves_noise) && !self.is_promising(set)?)
     }
 

@@ -8,11 +8,11 @@
 //!
 //! A set is an answer if each of its effects closes a share of the gap that is worth a name (*practical
 //! relevance*). One with an effect that closes less stands for what the set without that stands for: no real machine is exactly what
-//! a few laws say, and what refines an answer speaks for it, not for another that explains as much by a larger effect. One that predicts the
-//! same by a wrong nominal parameter, whatever the data, stands for that. Effects that can be exchanged within the stated odds cannot
+//! a few laws say, and what refines an answer speaks for it, not for another that explains as much by a larger effect. The likeliest
+//! stands for one that predicts the same by a wrong nominal parameter, whatever the data. Effects that can be exchanged within the stated odds cannot
 //! be told apart; an effect that can be left out within them cannot be told from none, and is not named.
 
-use simgap_effects::{Equivalent, Placed, same_place};
+use simgap_effects::{Equivalent, Family, Placed, same_place};
 use simgap_estimate::EstimateError;
 
 use crate::asked::Asked;
@@ -153,10 +153,9 @@ impl Search<'_> {
             let model = &self.problem.model;
             let same = self.space.equivalents(set.effects(), i, model).into_iter();
             same.filter_map(move |same| {
-                let parameter = self.space.wrong_parameter(same.kind, &same.at)?;
-                let mut key = set.key_without(i);
-                key.push(parameter);
-                key.sort();
+                let candidate = self.space.candidate_of(&same)?;
+                let is_parameter = candidate.effect.family() == Family::NominalParameter;
+                let key = is_parameter.then(|| set.key_with(i, candidate))?;
                 asked.places.get(&key).copied()
             })
         });

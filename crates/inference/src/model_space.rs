@@ -140,14 +140,10 @@ impl ModelSpace {
         f64::max(all, f64::MIN_POSITIVE)
     }
 
-    /// The name of a wrong nominal parameter of a kind at a place, if it is one that is looked for.
-    pub(crate) fn wrong_parameter(&self, kind: &str, at: &Location) -> Option<String> {
+    /// The candidate that an effect by another name is, if it is looked for.
+    pub(crate) fn candidate_of(&self, same: &Equivalent) -> Option<&Candidate> {
         let mut candidates = self.candidates.iter().map(|(candidate, _)| candidate);
-        let found = candidates.find(|known| {
-            let is_parameter = known.effect.family() == Family::NominalParameter;
-            is_parameter && known.effect.kind() == kind && same_place(&known.at, at)
-        })?;
-        Some(format!("{kind} {}", found.at))
+        candidates.find(|known| known.effect.kind() == same.kind && same_place(&known.at, &same.at))
     }
 
     /// What is the same thing by another name as the i-th effect of a set, on this plant, whatever the data; of
@@ -155,12 +151,7 @@ impl ModelSpace {
     #[must_use]
     pub fn equivalents(&self, effects: &[Placed], index: usize, model: &Model) -> Vec<Equivalent> {
         let mut same = equivalents_beside(effects, index, model);
-        same.retain(|other| {
-            let mut candidates = self.candidates.iter();
-            candidates.any(|(known, _)| {
-                known.effect.kind() == other.kind && same_place(&known.at, &other.at)
-            })
-        });
+        same.retain(|other| self.candidate_of(other).is_some());
         same
     }
 }

@@ -5,10 +5,12 @@
 //! ([`Search::moves_enough`]), nor one without which no more is left than no set is expected to explain; nor one beside others that
 //! explains less than half of what is left above the noise.
 
+use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, FitOptions, fit};
 
 use crate::candidate_model::{
-    CandidateModel, INDISTINGUISHABLE, is_bent, is_bent_from, is_nominal, name, remove,
+    CandidateModel, INDISTINGUISHABLE, NominalPrior, is_bent, is_bent_from, is_nominal, name,
+    remove,
 };
 use crate::gap::RELEVANT_SHARE;
 use crate::motion;
@@ -79,15 +81,13 @@ impl Search<'_> {
         is_larger && !is_bent(other) && !self.is_relevant(set, other, moves)
     }
 
-    /// Whether one effect of a set, with everything else as it is, moves an output by enough for a name. A wrong nominal parameter does
-    /// however little it moves: the others bend where it is kept as given. Within what the model states none bends, and it is asked of them
-    /// too, for what a simulation misses of a machine goes with its motion, and many samples show a parameter that is off by as much.
+    /// Whether one effect of a set, with everything else as it is, moves an output by enough for a name, or [`Search::may_be_small`].
     pub(crate) fn moves_enough(
         &self,
         set: &CandidateModel,
         index: usize,
     ) -> Result<bool, EstimateError> {
-        if is_nominal(&set.effects()[index]) && !self.is_within_stated() {
+        if self.may_be_small(&set.effects()[index]) {
             return Ok(true);
         }
         let held = FitOptions {
@@ -97,6 +97,13 @@ impl Search<'_> {
         let rest = remove(&set.fit.estimate, index, self.nominal);
         let rest = fit(self.problem, &rest, &held)?;
         Ok(self.is_enough(&motion::between(&set.fit, &rest)))
+    }
+
+    /// Whether an effect is worth a name however little it moves. A wrong nominal parameter is: the others bend where it is kept as given.
+    /// Within what the model states none bends, and none is, for what a simulation misses of a machine goes with its motion, and many samples
+    /// show a parameter that is off by as much.
+    pub(crate) fn may_be_small(&self, placed: &Placed) -> bool {
+        is_nominal(placed) && matches!(self.nominal, NominalPrior::Wrong)
     }
 
     /// Whether what moves each output by so much, rms, is enough for a name.

@@ -145,11 +145,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether it is one for nominal parameters within what the model states.
-    pub(crate) fn is_within_stated(&self) -> bool {
-        matches!(self.nominal, NominalPrior::Stated(_))
-    }
-
     pub(crate) fn tell(&self, stage: Stage) {
         (self.budget.progress)(stage.name());
     }

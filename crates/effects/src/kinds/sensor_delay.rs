@@ -29,13 +29,19 @@ pub(super) fn long_delay(scale: &SiteScale) -> Vec<Vec<f64>> {
     is_long.then(|| vec![scale.late_s]).into_iter().collect()
 }
 
+impl Delay {
+    fn samples(&self, signal: &Sampled<'_>) -> f64 {
+        self.delay_s / signal.time_step_s
+    }
+}
+
 impl Retiming for Delay {
     fn position(&self, signal: &Sampled<'_>, i: usize) -> f64 {
-        i as f64 - self.delay_s / signal.time_step_s
+        i as f64 - self.samples(signal)
     }
 
     fn behind(&self, signal: &Sampled<'_>) -> Option<f64> {
-        Some(self.delay_s / signal.time_step_s)
+        Some(self.samples(signal))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::effect::{Action, Effect, Family, Parameter, SiteKind, SiteScale};
-use crate::signal_map::{Sampled, SignalMap};
+use crate::signal_map::{BEFORE, POINTS, Sampled, SignalMap};
 
 /// A sensor follows with a first-order lag: a low-pass filter, a slow transducer.
 ///
@@ -26,10 +26,6 @@ use crate::signal_map::{Sampled, SignalMap};
 /// Reference: \[Franklin1998\], section 4.3.
 pub(crate) struct SensorLag;
 
-/// Samples of the polynomial.
-const POINTS: usize = 6;
-/// Those before the interval.
-const BEFORE: usize = 2;
 /// Below this x, moments are summed as a series: the recursion would lose digits.
 const SMALL: f64 = 1.0;
 /// Terms of that series: the next one is below 1e-16.

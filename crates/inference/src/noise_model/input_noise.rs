@@ -13,10 +13,11 @@
 //! part than there is. Of many draws of w the largest r counts in (2): on a plant without a spring it is a random
 //! walk, one walk is not like another, and that of the machine goes further than all of n draws in one of n + 1 records.
 
+use rayon::prelude::*;
 use simgap_effects::Placed;
 use simgap_estimate::{EstimateError, FitOptions, Problem, fit_initial_states};
 use simgap_signal::noise::{fall_of_spectrum, white_noise_std};
-use simgap_simulate::Run;
+use simgap_simulate::{Job, Run, SimulateError, predict_all};
 
 use crate::is_nominal;
 
@@ -126,27 +127,45 @@ pub(super) fn draws(
         }
         let simulator = problem.simulator(&parameters, index)?;
         let rest = vec![0.0; simulator.state_len()];
-        let clean = simulator.predict(run, &rest)?;
-        let mut white = vec![0.0; clean.len()];
-        let drawn = (0..DRAWS).map(|draw| {
-            let mut noisy = run.clone();
-            for (k, (input, size)) in noisy.inputs.iter_mut().zip(&sizes).enumerate() {
-                add_white(input, *size, [index as u64, draw, k as u64]);
-            }
-            let response = simulator.predict(&noisy, &rest)?;
-            let channels = white.iter_mut().zip(&response).zip(&clean).enumerate();
-            for (c, ((white, noisy), clean)) in channels {
+        let mut drawn: Vec<Run> = (0..DRAWS)
+            .map(|draw| {
+                let mut noisy = run.clone();
+                for (k, (input, size)) in noisy.inputs.iter_mut().zip(&sizes).enumerate() {
+                    add_white(input, *size, [index as u64, draw, k as u64]);
+                }
+                noisy
+            })
+            .collect();
+        let job = |run| Job {
+            simulator: &simulator,
+            run,
+            initial: &rest,
+            smooth: false,
+        };
+        let jobs: Vec<Job<'_>> = [run].into_iter().chain(&drawn).map(job).collect();
+        let mut responses = predict_all(&jobs).into_iter();
+        let clean = responses.next().transpose()?.unwrap_or_default();
+        let responses = responses.collect::<Result<Vec<_>, SimulateError>>()?;
+        let seen = responses.par_iter().map(|response| -> Vec<f64> {
+            let channels = response.iter().zip(&clean).enumerate();
+            let seen = channels.map(|(c, (noisy, clean))| {
                 let mut moved: Vec<f64> = noisy.iter().zip(clean).map(|(a, b)| a - b).collect();
                 problem.whitening.apply(c, &mut moved);
-                let seen = white_noise_std(&moved).map_or(0.0, |noise| noise.std);
+                white_noise_std(&moved).map_or(0.0, |noise| noise.std)
+            });
+            seen.collect()
+        });
+        let mut white = vec![0.0; clean.len()];
+        for seen in seen.collect::<Vec<Vec<f64>>>() {
+            for (white, seen) in white.iter_mut().zip(seen) {
                 *white += seen * seen / DRAWS as f64;
             }
+        }
+        for (noisy, response) in drawn.iter_mut().zip(responses) {
             // The model is driven by the input as it is.
             noisy.inputs.clone_from(&run.inputs);
             noisy.measured = response.into_iter().map(Some).collect();
-            Ok(noisy)
-        });
-        let drawn = drawn.collect::<Result<Vec<Run>, EstimateError>>()?;
+        }
         let left = fit_initial_states(&problem.with_runs(drawn), &parameters, weights)?;
         all.push(Drawn {
             left: left.discrepancy,

@@ -111,7 +111,7 @@ impl Search<'_> {
         let mut paying = self.scores(set, linear);
         paying.retain(pays);
         let moving = paying.into_par_iter().filter_map(|score| {
-            let may_be_small = is_nominal(&score.start) && !self.is_within_stated();
+            let may_be_small = self.may_be_small(&score.start);
             let start = add_scored(&set.fit.estimate, score);
             // From a start where the plant runs away nothing is promised.
             let with = linear.fit(&start, &held).ok()?;

@@ -305,8 +305,7 @@ impl<R: Row> Seen<R> {
                 }
             }
         }
-        let needs_acceleration = self.needs_acceleration;
-        if needs_acceleration {
+        if self.needs_acceleration {
             copy(&mut self.net, force);
             lanes.block.add_to(simd, &self.carried, &mut self.net);
             let kernel = &lanes.block.kernel;
@@ -320,7 +319,7 @@ impl<R: Row> Seen<R> {
             sample,
             displacement: state.displacement.shown(&mut self.state.displacement),
             velocity: state.velocity.shown(&mut self.state.velocity),
-            acceleration: if needs_acceleration {
+            acceleration: if self.needs_acceleration {
                 acceleration
             } else {
                 &[]
