@@ -152,38 +152,47 @@ impl WithSimd for Block<'_> {
     }
 }
 
-/// Σ xᵢ yᵢ of each x with each y.
+/// Σ xᵢ yᵢ of each x with each y, all of one length.
 #[inline(always)]
 fn dots<S: Simd>(simd: S, left: [&[f64]; ROWS], right: [&[f64]; COLUMNS]) -> Tile {
-    let left = left.map(|signal| signal.as_chunks::<LANES>());
-    let right = right.map(|signal| signal.as_chunks::<LANES>());
-    let count = left.iter().chain(&right).map(|(all, _)| all.len());
-    let count = count.min().unwrap_or(0);
-    let (xs, ys) = (left.map(|x| &x.0[..count]), right.map(|y| &y.0[..count]));
+    // Loops in the place of closures. Where one is not inlined, each sample is checked to be there and each sum is in memory.
+    let count = left[0].len() / LANES;
+    let mut xs = [&left[0].as_chunks::<LANES>().0[..count]; ROWS];
+    let mut ys = [&right[0].as_chunks::<LANES>().0[..count]; COLUMNS];
+    for (x, signal) in xs.iter_mut().zip(&left) {
+        *x = &signal.as_chunks::<LANES>().0[..count];
+    }
+    for (y, signal) in ys.iter_mut().zip(&right) {
+        *y = &signal.as_chunks::<LANES>().0[..count];
+    }
     let mut sums = [[[simd.splat_f64s(0.0); LANES]; COLUMNS]; ROWS];
     let registers = LANES / S::F64_LANES;
     for n in 0..count {
-        let y = ys.map(|y| S::as_simd_f64s(&y[n]).0);
-        for r in 0..ROWS {
-            let x = S::as_simd_f64s(&xs[r][n]).0;
-            for c in 0..COLUMNS {
+        for c in 0..COLUMNS {
+            let y = S::as_simd_f64s(&ys[c][n]).0;
+            for r in 0..ROWS {
+                let x = S::as_simd_f64s(&xs[r][n]).0;
                 for k in 0..registers {
-                    let product = simd.mul_f64s(x[k], y[c][k]);
+                    let product = simd.mul_f64s(x[k], y[k]);
                     sums[r][c][k] = simd.add_f64s(sums[r][c][k], product);
                 }
             }
         }
     }
-    std::array::from_fn(|r| {
-        std::array::from_fn(|c| {
+    let mut tile = [[0.0; COLUMNS]; ROWS];
+    for r in 0..ROWS {
+        for c in 0..COLUMNS {
             let mut lanes = [0.0; LANES];
-            S::as_mut_simd_f64s(&mut lanes)
-                .0
-                .copy_from_slice(&sums[r][c][..registers]);
-            let rest = left[r].1.iter().zip(right[c].1);
-            lanes.iter().sum::<f64>() + rest.map(|(p, q)| p * q).sum::<f64>()
-        })
-    })
+            let registers = S::as_mut_simd_f64s(&mut lanes).0;
+            for (register, sum) in registers.iter_mut().zip(sums[r][c]) {
+                *register = sum;
+            }
+            let rest = left[r].iter().zip(right[c]).skip(count * LANES);
+            let rest: f64 = rest.map(|(p, q)| p * q).sum();
+            tile[r][c] = lanes.iter().sum::<f64>() + rest;
+        }
+    }
+    tile
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use divan::counter::ItemsCount;
-use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSet, LaneSnapshot, Pack};
+use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSamples, LaneSet, Pack};
 use simgap_integrate::exact::{Element, ExactPropagator, Excitation, ForceLaw, MemberMotion};
 use simgap_model::{Node, StructuralMatrices};
 
@@ -48,9 +48,11 @@ enum Plant {
     Cubic1,
     FrictionAndCubic1,
     Friction2,
+    /// At the first mass, and a spring between the two.
+    FrictionAndCubic2,
 }
 
-use Plant::{Cubic1, Friction2, FrictionAndCubic1, Linear2};
+use Plant::{Cubic1, Friction2, FrictionAndCubic1, FrictionAndCubic2, Linear2};
 
 /// A set whose values are off by some per cent.
 fn set(plant: Plant, share: f64) -> (ExactPropagator, Vec<Element>) {
@@ -61,7 +63,7 @@ fn set(plant: Plant, share: f64) -> (ExactPropagator, Vec<Element>) {
             damping_matrix: faer::mat![[2.0 * size]],
             stiffness_matrix: faer::mat![[900.0 * size]],
         },
-        Linear2 | Friction2 => StructuralMatrices {
+        Linear2 | Friction2 | FrictionAndCubic2 => StructuralMatrices {
             mass_matrix: faer::mat![[1.0, 0.0], [0.0, 0.5]],
             damping_matrix: faer::mat![[2.0, -0.6], [-0.6, 0.9 * size]],
             stiffness_matrix: faer::mat![[1800.0, -900.0], [-900.0, 1200.0 * size]],
@@ -75,6 +77,14 @@ fn set(plant: Plant, share: f64) -> (ExactPropagator, Vec<Element>) {
         Cubic1 => vec![cubic()],
         FrictionAndCubic1 => vec![friction(), cubic()],
         Friction2 => vec![friction()],
+        FrictionAndCubic2 => {
+            let factor = 2e6 * size;
+            let spring = Box::new(Cubic { factor });
+            vec![
+                friction(),
+                Element::between(Node::Dof(0), Node::Dof(1), spring),
+            ]
+        }
     };
     (ExactPropagator::new(&structure, STEP_S).unwrap(), elements)
 }
@@ -82,7 +92,7 @@ fn set(plant: Plant, share: f64) -> (ExactPropagator, Vec<Element>) {
 fn dof_count(plant: Plant) -> usize {
     match plant {
         Cubic1 | FrictionAndCubic1 => 1,
-        Linear2 | Friction2 => 2,
+        Linear2 | Friction2 | FrictionAndCubic2 => 2,
     }
 }
 
@@ -111,7 +121,7 @@ fn excitation(force: &[f64]) -> Excitation<'_> {
 struct Sums(Vec<Pack>);
 
 impl LaneObserver for Sums {
-    fn needs_acceleration(&self) -> bool {
+    fn reads_acceleration(&self, _: usize) -> bool {
         false
     }
 
@@ -120,15 +130,17 @@ impl LaneObserver for Sums {
     }
 
     #[inline(always)]
-    fn observe(&mut self, at: &LaneSnapshot<'_>) {
-        let sum = &mut self.0[at.first_set / LANES];
-        for (sum, value) in sum.0.iter_mut().zip(&at.displacement[0].0) {
-            *sum += value;
+    fn observe(&mut self, samples: &LaneSamples<'_>) {
+        let sum = &mut self.0[samples.first_set / LANES];
+        for k in 0..samples.count {
+            for (sum, value) in sum.0.iter_mut().zip(&samples.displacement(k)[0].0) {
+                *sum += value;
+            }
         }
     }
 }
 
-#[divan::bench(args = [Linear2, Cubic1, FrictionAndCubic1, Friction2], sample_count = 10)]
+#[divan::bench(args = [Linear2, Cubic1, FrictionAndCubic1, Friction2, FrictionAndCubic2], sample_count = 10)]
 fn alone(bencher: divan::Bencher<'_, '_>, plant: Plant) {
     let n = dof_count(plant);
     let force = force(n);
@@ -150,7 +162,7 @@ fn alone(bencher: divan::Bencher<'_, '_>, plant: Plant) {
     });
 }
 
-#[divan::bench(args = [Linear2, Cubic1, FrictionAndCubic1, Friction2], consts = SETS, sample_count = 10)]
+#[divan::bench(args = [Linear2, Cubic1, FrictionAndCubic1, Friction2, FrictionAndCubic2], consts = SETS, sample_count = 10)]
 fn in_lanes<const SETS: usize>(bencher: divan::Bencher<'_, '_>, plant: Plant) {
     let n = dof_count(plant);
     let force = force(n);

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use simgap_integrate::exact::Excitation;
-use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSet, LaneSnapshot, Pack};
+use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSamples, LaneSet, Pack};
 
-use crate::outputs::{LaneBase, OutputPlan};
+use crate::outputs::OutputPlan;
 use crate::prepare::Workshop;
 use crate::prepared::Prepared;
 use crate::{Run, SimulateError, Simulator};
@@ -165,7 +165,6 @@ fn march(
     let plan = |l: usize, k: usize| &jobs[lane(l)].simulator.outputs[k];
     let mut recorder = Recorder {
         plans,
-        accelerated: plans.iter().any(OutputPlan::needs_acceleration),
         coefficients: (0..plans.len())
             .map(|k| {
                 [
@@ -175,8 +174,7 @@ fn march(
             })
             .collect(),
         ready: std::array::from_fn(|l| ready[lane(l)]),
-        buffer: vec![[Pack::ZERO; CHUNK]; plans.len()],
-        seen: 0,
+        values: vec![],
         signals: jobs
             .iter()
             .map(|job| vec![vec![0.0; job.run.len]; plans.len()])
@@ -185,29 +183,24 @@ fn march(
     if let Some(batch) = Batch::new(sets.collect()) {
         batch.march(&mut recorder);
     }
-    recorder.finish()
+    recorder.signals
 }
-
-/// Samples that are kept in lanes before they go to the signals.
-const CHUNK: usize = 64;
 
 /// Writes down the outputs of up to eight jobs.
 struct Recorder<'a> {
     plans: &'a [OutputPlan],
-    accelerated: bool,
     /// Stiffness and damping of the members each output sees.
     coefficients: Vec<[Pack; 2]>,
     ready: [&'a Prepared; LANES],
-    /// Values of the present chunk, output by output.
-    buffer: Vec<[Pack; CHUNK]>,
-    /// Samples seen.
-    seen: usize,
+    /// Those of an output at the samples that are shown.
+    values: Vec<Pack>,
     signals: Vec<Vec<Vec<f64>>>,
 }
 
 impl LaneObserver for Recorder<'_> {
-    fn needs_acceleration(&self) -> bool {
-        self.accelerated
+    fn reads_acceleration(&self, coordinate: usize) -> bool {
+        let mut plans = self.plans.iter();
+        plans.any(|plan| plan.reads_acceleration(coordinate))
     }
 
     fn reads_displacement(&self, coordinate: usize) -> bool {
@@ -223,45 +216,20 @@ impl LaneObserver for Recorder<'_> {
     }
 
     #[inline(always)]
-    fn observe(&mut self, at: &LaneSnapshot<'_>) {
-        let slot = at.sample % CHUNK;
-        let base = LaneBase {
-            sample: at.sample,
-            ready: &self.ready,
-        };
+    fn observe(&mut self, samples: &LaneSamples<'_>) {
         for (k, plan) in self.plans.iter().enumerate() {
-            self.buffer[k][slot] = plan.read_lanes(at, &base, &self.coefficients[k]);
-        }
-        self.seen = at.sample + 1;
-        if slot + 1 == CHUNK {
-            self.flush();
-        }
-    }
-}
-
-impl Recorder<'_> {
-    /// Moves the present chunk to the signals.
-    fn flush(&mut self) {
-        let Some(last) = self.seen.checked_sub(1) else {
-            return;
-        };
-        let first = last / CHUNK * CHUNK;
-        for (lane, signals) in self.signals.iter_mut().enumerate() {
-            for (signal, buffer) in signals.iter_mut().zip(&self.buffer) {
+            self.values.resize(samples.count, Pack::ZERO);
+            for (i, value) in self.values.iter_mut().enumerate() {
+                *value = plan.read_lanes((samples, i), &self.ready, &self.coefficients[k]);
+            }
+            for (lane, signals) in self.signals.iter_mut().enumerate() {
                 // A job whose run is over keeps what it has.
-                let end = signal.len().min(self.seen);
-                let values = signal.get_mut(first..end).unwrap_or_default();
-                for (value, pack) in values.iter_mut().zip(buffer) {
+                let end = signals[k].len().min(samples.first + samples.count);
+                let signal = signals[k].get_mut(samples.first..end).unwrap_or_default();
+                for (value, pack) in signal.iter_mut().zip(&self.values) {
                     *value = pack.0[lane];
                 }
             }
         }
-    }
-
-    fn finish(mut self) -> Vec<Vec<Vec<f64>>> {
-        if !self.seen.is_multiple_of(CHUNK) {
-            self.flush();
-        }
-        self.signals
     }
 }

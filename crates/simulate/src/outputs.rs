@@ -1,6 +1,6 @@
 //! From the state of the plant to the outputs of the model.
 
-use simgap_integrate::exact::lanes::{LANES, LaneSnapshot, Pack};
+use simgap_integrate::exact::lanes::{LANES, LaneSamples, Pack};
 use simgap_integrate::exact::{Element, Snapshot};
 use simgap_model::{Form, Model, ModelError, Node, PRESSURE_UNIT_PA, Reading};
 
@@ -41,20 +41,13 @@ pub(crate) fn across([a, b]: [Node; 2], dofs: &[f64], bases: &[f64]) -> f64 {
     a.of(dofs, bases) - b.of(dofs, bases)
 }
 
-/// Where the base nodes of eight sets are at one sample.
-pub(crate) struct LaneBase<'a> {
-    pub(crate) sample: usize,
-    pub(crate) ready: &'a [&'a Prepared; LANES],
-}
-
-impl LaneBase<'_> {
-    fn acceleration(&self, node: usize) -> Pack {
-        Pack::of(|l| {
-            let drive = &self.ready[l].drive;
-            let at = self.sample * drive.base_count + node;
-            drive.base_acceleration.get(at).copied().unwrap_or(0.0)
-        })
-    }
+/// Acceleration of a base node of eight sets at a sample.
+fn base_acceleration(ready: &[&Prepared; LANES], sample: usize, node: usize) -> Pack {
+    Pack::of(|l| {
+        let drive = &ready[l].drive;
+        let at = sample * drive.base_count + node;
+        drive.base_acceleration.get(at).copied().unwrap_or(0.0)
+    })
 }
 
 impl OutputPlan {
@@ -65,25 +58,25 @@ impl OutputPlan {
             && self.offset == other.offset
     }
 
-    /// As [`OutputPlan::read`] for eight sets, whose members have these stiffnesses and dampings.
+    /// As [`OutputPlan::read`] for eight sets at the k-th of some samples; their members have these stiffnesses and dampings.
     #[inline(always)]
     pub(crate) fn read_lanes(
         &self,
-        at: &LaneSnapshot<'_>,
-        base: &LaneBase<'_>,
+        (samples, k): (&LaneSamples<'_>, usize),
+        ready: &[&Prepared; LANES],
         [stiffness, damping]: &[Pack; 2],
     ) -> Pack {
-        let displacement = || self.across_lanes(at.displacement, |i| at.base_displacement[i]);
-        let velocity = || self.across_lanes(at.velocity, |i| at.base_velocity[i]);
         match self.read {
-            Read::Displacement => displacement(),
-            Read::Velocity => velocity(),
-            Read::Acceleration => self.across_lanes(at.acceleration, |i| base.acceleration(i)),
+            Read::Displacement => self.displacement(samples, k),
+            Read::Velocity => self.velocity(samples, k),
+            Read::Acceleration => self.across_lanes(samples.acceleration(k), |i| {
+                base_acceleration(ready, samples.first + k, i)
+            }),
             Read::Sum => {
-                let (x, v) = (displacement(), velocity());
+                let (x, v) = (self.displacement(samples, k), self.velocity(samples, k));
                 let mut on_top = Pack([-0.0; LANES]);
                 for &(i, sign) in &self.elements {
-                    let force = &at.element_force[i];
+                    let force = &samples.element_force(k)[i];
                     on_top = Pack::of(|l| on_top.0[l] + sign * force.0[l]);
                 }
                 let offset = self.offset;
@@ -92,10 +85,23 @@ impl OutputPlan {
         }
     }
 
+    #[inline(always)]
+    fn displacement(&self, samples: &LaneSamples<'_>, k: usize) -> Pack {
+        self.across_lanes(samples.displacement(k), |i| samples.base_displacement(k)[i])
+    }
+
+    #[inline(always)]
+    fn velocity(&self, samples: &LaneSamples<'_>, k: usize) -> Pack {
+        self.across_lanes(samples.velocity(k), |i| samples.base_velocity(k)[i])
+    }
+
     /// Difference between the two nodes.
     #[inline(always)]
     fn across_lanes(&self, dofs: &[Pack], of_base: impl Fn(usize) -> Pack) -> Pack {
         let a = value_in_lanes(self.a, dofs, &of_base);
+        if self.b == Node::Ground {
+            return a;
+        }
         let b = value_in_lanes(self.b, dofs, &of_base);
         Pack::of(|l| a.0[l] - b.0[l])
     }
@@ -107,8 +113,18 @@ impl OutputPlan {
             Read::Velocity | Read::Acceleration => false,
             Read::Sum => has_stiffness,
         };
+        reads && self.is_of(coordinate)
+    }
+
+    /// Whether the acceleration of a coordinate is read.
+    pub(crate) fn reads_acceleration(&self, coordinate: usize) -> bool {
+        self.needs_acceleration() && self.is_of(coordinate)
+    }
+
+    /// Whether a coordinate moves one of the two nodes.
+    fn is_of(&self, coordinate: usize) -> bool {
         let mut terms = self.a.terms().chain(self.b.terms());
-        reads && terms.any(|(i, _)| i == coordinate)
+        terms.any(|(i, _)| i == coordinate)
     }
 
     pub(crate) fn needs_acceleration(&self) -> bool {

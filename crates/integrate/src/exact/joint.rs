@@ -17,6 +17,15 @@ pub(super) struct Joint {
     pub(super) has_tangent: bool,
 }
 
+/// What a law is at its joint.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Role {
+    /// The one that rubs.
+    pub(super) dry: bool,
+    /// The one that remembers.
+    pub(super) remembering: bool,
+}
+
 impl Joint {
     fn of(place: usize, element: &Element) -> Joint {
         let law = &element.law;
@@ -25,6 +34,15 @@ impl Joint {
             dry: law.dry_level(0.0).is_some(),
             remembers: law.remembers().then_some(place),
             has_tangent: law.has_tangent(),
+        }
+    }
+
+    /// What one of its elements is there.
+    #[inline(always)]
+    pub(super) fn role(&self, element: usize) -> Role {
+        Role {
+            dry: self.dry && element == self.elements[0],
+            remembering: self.remembers == Some(element),
         }
     }
 

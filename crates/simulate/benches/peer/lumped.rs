@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use faer::mat;
 use simgap_effects::{Action, find};
-use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSet, LaneSnapshot};
+use simgap_integrate::exact::lanes::{Batch, LANES, LaneObserver, LaneSamples, LaneSet};
 use simgap_integrate::exact::{Element, ExactPropagator, Excitation};
 use simgap_model::{Node, StructuralMatrices};
 
@@ -104,13 +104,24 @@ fn called(sets: Vec<Set>, n: usize) -> Call {
 struct Written<'a>(&'a mut [[f64; LANES]]);
 
 impl LaneObserver for Written<'_> {
-    fn needs_acceleration(&self) -> bool {
+    fn reads_acceleration(&self, _: usize) -> bool {
+        false
+    }
+
+    fn reads_forces(&self) -> bool {
         false
     }
 
     #[inline(always)]
-    fn observe(&mut self, at: &LaneSnapshot<'_>) {
-        let last = at.displacement.len() - 1;
-        self.0[at.sample] = at.displacement[last].0;
+    fn observe(&mut self, samples: &LaneSamples<'_>) {
+        for (k, out) in self.0[samples.first..]
+            .iter_mut()
+            .take(samples.count)
+            .enumerate()
+        {
+            if let Some(last) = samples.displacement(k).last() {
+                *out = last.0;
+            }
+        }
     }
 }

@@ -32,7 +32,7 @@ pub(super) struct Block<'a> {
     pub(super) compliance: [Vec<Pack>; 4],
     pub(super) together: Together,
     sweeps: usize,
-    any_dry: bool,
+    pub(super) any_dry: bool,
     any_memory: bool,
     /// Whether the force of an element is spread over steps in some set.
     pub(super) spread: Vec<bool>,
@@ -64,16 +64,15 @@ fn across<S: Simd>(simd: S, [a, b]: [Node; 2], values: &[Pack], bases: &[Pack]) 
 
 /// Motion across an element: displacement and velocity.
 #[inline(always)]
-pub(super) fn motion_across<S: Simd, R: Row>(
+pub(super) fn motion_across<S: Simd>(
     simd: S,
     port: Port,
-    state: &State<R>,
-    base: &[Pack],
+    [x, v]: [&[Pack]; 2],
+    [base_x, base_v]: [&[Pack]; 2],
 ) -> [Pack; 2] {
-    let (base_x, base_v) = base.split_at(base.len() / 2);
     [
-        across(simd, port.displacement, state.displacement.packs(), base_x),
-        across(simd, port.velocity, state.velocity.packs(), base_v),
+        across(simd, port.displacement, x, base_x),
+        across(simd, port.velocity, v, base_v),
     ]
 }
 
@@ -107,7 +106,12 @@ fn push_body<S: Simd>(simd: S, point: BodyPoint, force: Wide<S>, dof_force: &mut
 
 /// `value − (a b + c d)`.
 #[inline(always)]
-fn less_products<S: Simd>(simd: S, value: &Pack, first: [&Pack; 2], second: [&Pack; 2]) -> Pack {
+pub(super) fn less_products<S: Simd>(
+    simd: S,
+    value: &Pack,
+    first: [&Pack; 2],
+    second: [&Pack; 2],
+) -> Pack {
     let product = |[a, b]: [&Pack; 2]| Wide::of(simd, a) * Wide::of(simd, b);
     (Wide::of(simd, value) - (product(first) + product(second))).pack()
 }
@@ -131,6 +135,7 @@ impl<'a> Block<'a> {
         let joint = |i: usize| JointLanes {
             displacement: Pack::ZERO,
             velocity: Pack::ZERO,
+            without: [Pack::ZERO; 2],
             time_s: Pack::ZERO,
             step_s: Pack::of(|l| sets[l].propagator.time_step_s),
             compliance: [compliance[0][i * m + i], compliance[1][i * m + i]],
@@ -194,31 +199,40 @@ impl<'a> Block<'a> {
         simd: S,
         [state, next]: [&mut State<R>; 2],
         [before, after]: [&mut R; 2],
-        base: &[Pack],
+        base: [&[Pack]; 2],
         steps: usize,
     ) {
         self.spread_smooth(simd, before);
         let forces = [before.packs(), after.packs()];
         self.kernel.step(simd, state, forces, next);
         if !self.joints.is_empty() {
-            self.solve(simd, next, base, steps as f64);
+            self.solve(simd, next, base, steps);
             self.push(simd, before, next);
         }
         state.take_over(next);
     }
 
+    /// When so many steps have passed, s.
+    #[inline(always)]
+    pub(super) fn time_s<S: Simd>(&self, simd: S, steps: usize) -> Pack {
+        let passed = Wide::splat(simd, steps as f64) * Wide::of(simd, &self.step_s);
+        (Wide::of(simd, &self.start_s) + passed).pack()
+    }
+
     /// Forces of the elements at the end of the step.
     #[inline(always)]
-    fn solve<S: Simd, R: Row>(&mut self, simd: S, next: &State<R>, base: &[Pack], steps: f64) {
-        let passed = Wide::splat(simd, steps) * Wide::of(simd, &self.step_s);
-        let time_s = (Wide::of(simd, &self.start_s) + passed).pack();
+    fn solve<S: Simd, R: Row>(
+        &mut self,
+        simd: S,
+        next: &State<R>,
+        base: [&[Pack]; 2],
+        steps: usize,
+    ) {
+        let time_s = self.time_s(simd, steps);
         for (k, (joint, free)) in self.joints.iter_mut().zip(&mut self.free).enumerate() {
             let port = self.ports[self.places[k].elements[0]];
-            *free = motion_across(simd, port, next, base);
-            joint.time_s = time_s;
-            joint.free_velocity = free[1];
-            joint.start_velocity = joint.end_velocity;
-            joint.extrapolate(simd);
+            *free = motion_across(simd, port, next.packs(), base);
+            joint.begin(simd, free[1], time_s);
         }
         let mut open = Mask::ALL;
         for _ in 0..self.sweeps {

@@ -17,14 +17,16 @@ pub(super) struct LaneKernel {
     gamma0: Vec<Pack>,
     gamma1: Vec<Pack>,
     held: Vec<Pack>,
-    inverse_mass: Vec<Pack>,
-    stiffness: Vec<Pack>,
-    damping: Vec<Pack>,
 }
 
 /// `sum` and the product of a row of a matrix with a column.
 #[inline(always)]
-fn add_products<S: Simd>(simd: S, mut sum: Wide<S>, matrix: &[Pack], column: &[Pack]) -> Wide<S> {
+pub(super) fn add_products<S: Simd>(
+    simd: S,
+    mut sum: Wide<S>,
+    matrix: &[Pack],
+    column: &[Pack],
+) -> Wide<S> {
     for (entry, value) in matrix.iter().zip(column) {
         sum += Wide::of(simd, entry) * Wide::of(simd, value);
     }
@@ -33,7 +35,7 @@ fn add_products<S: Simd>(simd: S, mut sum: Wide<S>, matrix: &[Pack], column: &[P
 
 /// The product alone, of at least one entry.
 #[inline(always)]
-fn products<S: Simd>(simd: S, matrix: &[Pack], column: &[Pack]) -> Wide<S> {
+pub(super) fn products<S: Simd>(simd: S, matrix: &[Pack], column: &[Pack]) -> Wide<S> {
     let first = Wide::of(simd, &matrix[0]) * Wide::of(simd, &column[0]);
     add_products(simd, first, &matrix[1..], &column[1..])
 }
@@ -58,9 +60,6 @@ impl LaneKernel {
             gamma0: pack(&|p| p.gamma0.clone()),
             gamma1: pack(&|p| p.gamma1.clone()),
             held: pack(&|p| p.gamma0.iter().zip(&p.gamma1).map(|(a, b)| a + b).collect()),
-            inverse_mass: pack(&|p| p.inverse_mass.clone()),
-            stiffness: pack(&|p| p.stiffness.clone()),
-            damping: pack(&|p| p.damping.clone()),
         }
     }
 
@@ -73,12 +72,12 @@ impl LaneKernel {
         [before, after]: [&[Pack]; 2],
         next: &mut State<R>,
     ) {
-        if let Some(compact) = &mut self.compact {
+        let (x, v) = (state.displacement.packs(), state.velocity.packs());
+        let n = x.len();
+        if let Some(compact) = self.compact.as_mut().filter(|_| n > COMPARED) {
             compact.step(state, [before, after], next);
             return;
         }
-        let (x, v) = (state.displacement.packs(), state.velocity.packs());
-        let n = x.len();
         let (gamma0, gamma1) = (&self.gamma0[..2 * n * n], &self.gamma1[..2 * n * n]);
         let phi = &self.phi[..4 * n * n];
         let halves = [&mut next.displacement, &mut next.velocity];
@@ -98,7 +97,8 @@ impl LaneKernel {
     /// Adds Γ₁ f to `next`.
     #[inline(always)]
     pub(super) fn push_end<S: Simd, R: Row>(&mut self, simd: S, force: &R, next: &mut State<R>) {
-        if let Some(compact) = &mut self.compact {
+        let n = force.packs().len();
+        if let Some(compact) = self.compact.as_mut().filter(|_| n > COMPARED) {
             compact.push_end(force.packs(), next);
             return;
         }
@@ -109,33 +109,6 @@ impl LaneKernel {
     #[inline(always)]
     pub(super) fn push_held<S: Simd, R: Row>(&self, simd: S, force: &R, next: &mut State<R>) {
         push(simd, &self.held, force, next);
-    }
-
-    /// Acceleration `M⁻¹ (f − C ẋ − K x)`, m/s².
-    #[inline(always)]
-    pub(super) fn acceleration<S: Simd, R: Row>(
-        &self,
-        simd: S,
-        state: &State<R>,
-        force: &R,
-        acceleration: &mut R,
-    ) {
-        let (x, v) = (state.displacement.packs(), state.velocity.packs());
-        let n = x.len();
-        let (force, acceleration) = (force.packs(), acceleration.packs_mut());
-        acceleration.fill(Pack::ZERO);
-        for j in 0..n {
-            let mut net = Wide::of(simd, &force[j]);
-            for k in 0..n {
-                let spring = Wide::of(simd, &self.stiffness[j * n + k]) * Wide::of(simd, &x[k]);
-                let damper = Wide::of(simd, &self.damping[j * n + k]) * Wide::of(simd, &v[k]);
-                net -= spring + damper;
-            }
-            for (i, out) in acceleration.iter_mut().enumerate() {
-                let mobility = Wide::of(simd, &self.inverse_mass[i * n + j]);
-                *out = (Wide::of(simd, out) + mobility * net).pack();
-            }
-        }
     }
 }
 

@@ -4,9 +4,12 @@ use std::any::Any;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::joint::{Acting, JointLanes, LaneLaw};
+use super::joint::{JointLanes, LaneLaw};
+use super::settle::{Acting, settle};
 use super::solve::{self, LawLanes};
-use super::{LANES, Pack};
+use super::wide::Wide;
+use super::{LANES, Mask, Pack};
+use crate::exact::joint::Role;
 use crate::exact::law::{Followed, ForceLaw, MemberMotion, Tangent};
 
 /// The parameters of eight laws of one type, and how they become a law again.
@@ -69,8 +72,12 @@ impl<L: ForceLaw, F: Fn([f64; K]) -> L, const K: usize> LawLanes for Gathered<F,
 }
 
 impl<L: LawLanes + Send + Sync> LaneLaw for L {
-    fn act(&self, arch: Arch, is: Acting, joint: &mut JointLanes) {
-        arch.dispatch(Act(self, is, joint));
+    fn act(&self, arch: Arch, role: Role, joint: &mut JointLanes) {
+        arch.dispatch(Act(self, role, joint));
+    }
+
+    fn settle(&self, arch: Arch, role: Role, joint: &mut JointLanes, open: &Mask) -> Mask {
+        arch.dispatch(Settle(self, role, joint, open))
     }
 
     fn tangent(&self, arch: Arch, joint: &mut JointLanes) {
@@ -83,7 +90,7 @@ impl<L: LawLanes + Send + Sync> LaneLaw for L {
 }
 
 /// [`solve::act`] in the best instructions there are; a closure would not be inlined into them.
-struct Act<'a, L>(&'a L, Acting, &'a mut JointLanes);
+struct Act<'a, L>(&'a L, Role, &'a mut JointLanes);
 
 impl<L: LawLanes> WithSimd for Act<'_, L> {
     type Output = ();
@@ -91,6 +98,32 @@ impl<L: LawLanes> WithSimd for Act<'_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         solve::act(simd, self.0, self.1, self.2);
+    }
+}
+
+/// [`settle`] likewise.
+struct Settle<'a, L>(&'a L, Role, &'a mut JointLanes, &'a Mask);
+
+impl<L: LawLanes> WithSimd for Settle<'_, L> {
+    type Output = Mask;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Mask {
+        let Settle(laws, role, joint, open) = self;
+        let (moved, rest) = settle(simd, joint, open, &mut Alone(laws, role));
+        joint.force = (Wide::of(simd, &joint.force) + rest).pack();
+        moved
+    }
+}
+
+/// The only law of a joint.
+struct Alone<'a, L>(&'a L, Role);
+
+impl<S: Simd, L: LawLanes> Acting<S> for Alone<'_, L> {
+    #[inline(always)]
+    fn act(&mut self, simd: S, joint: &mut JointLanes) -> Wide<S> {
+        solve::act(simd, self.0, self.1, joint);
+        Wide::zero(simd) + Wide::of(simd, &joint.force)
     }
 }
 

@@ -9,25 +9,35 @@
 //! a set's result is the same to the last bit in a batch, whatever its neighbours, and alone,
 //! whatever instructions the processor has.
 
+mod acceleration;
 mod batch;
 mod block;
 mod compact;
+mod drive;
+mod eight;
 mod joint;
 mod kernel;
 mod law;
+mod march;
 mod members;
+mod observer;
+mod one_joint;
 mod row;
 mod secant;
+mod seen;
 mod set;
+mod settle;
 mod solve;
 mod source;
 mod together;
 mod trial;
 mod wide;
 
-pub use batch::{Batch, LaneObserver, LaneSnapshot};
-pub use joint::{Acting, JointLanes, LaneLaw};
+pub use super::joint::Role;
+pub use batch::Batch;
+pub use joint::{JointLanes, LaneLaw};
 pub use law::{PackLaw, gather, together};
+pub use observer::{LaneObserver, LaneSamples};
 pub use set::LaneSet;
 
 /// Sets in a pack: one register of AVX-512, two of AVX2.
@@ -52,7 +62,7 @@ impl Pack {
 /// Which lanes are meant: all bits, or none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
-pub(super) struct Mask(pub(super) [u64; LANES]);
+pub struct Mask(pub(super) [u64; LANES]);
 
 impl Mask {
     pub(super) const ALL: Mask = Mask([u64::MAX; LANES]);

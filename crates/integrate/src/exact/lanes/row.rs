@@ -11,9 +11,6 @@ pub(super) trait Row: Clone {
 
     /// Takes the place of `other`, which is room afterwards.
     fn take_over(&mut self, other: &mut Self);
-
-    /// The row for an observer, who indexes it as he likes: in memory, for which there is room.
-    fn shown<'a>(&'a self, room: &'a mut Self) -> &'a [Pack];
 }
 
 impl<const N: usize> Row for [Pack; N] {
@@ -30,12 +27,6 @@ impl<const N: usize> Row for [Pack; N] {
     #[inline(always)]
     fn take_over(&mut self, other: &mut Self) {
         *self = *other;
-    }
-
-    #[inline(always)]
-    fn shown<'a>(&'a self, room: &'a mut Self) -> &'a [Pack] {
-        *room = *self;
-        room
     }
 }
 
@@ -54,11 +45,6 @@ impl Row for Vec<Pack> {
     fn take_over(&mut self, other: &mut Self) {
         std::mem::swap(self, other);
     }
-
-    #[inline(always)]
-    fn shown<'a>(&'a self, _: &'a mut Self) -> &'a [Pack] {
-        self
-    }
 }
 
 /// Where eight plants are: x and ẋ.
@@ -69,18 +55,17 @@ pub(super) struct State<R> {
 }
 
 impl<R: Row> State<R> {
+    #[inline(always)]
+    pub(super) fn packs(&self) -> [&[Pack]; 2] {
+        [self.displacement.packs(), self.velocity.packs()]
+    }
+
     /// Takes the place of `other`, which is room afterwards.
     #[inline(always)]
     pub(super) fn take_over(&mut self, other: &mut State<R>) {
         self.displacement.take_over(&mut other.displacement);
         self.velocity.take_over(&mut other.velocity);
     }
-}
-
-/// Takes over a row without new room.
-#[inline(always)]
-pub(super) fn copy<R: Row>(to: &mut R, from: &R) {
-    to.packs_mut().copy_from_slice(from.packs());
 }
 
 /// Longest row whose entries are found by comparing: the longest array that a batch is marched in.

@@ -76,7 +76,7 @@ impl<S: Simd> Secant<S> {
     /// The gain for the next step of the march.
     #[inline(always)]
     pub(super) fn kept_gain(&self) -> Wide<S> {
-        let [zero, most] = [0.0, GAIN_MOST].map(|value| Wide::splat(self.simd, value));
+        let (zero, most) = (Wide::zero(self.simd), Wide::splat(self.simd, GAIN_MOST));
         let is_kept = self.gain.is_at_most(most) & !self.gain.is_at_most(zero);
         is_kept.choose(self.gain, Wide::splat(self.simd, GAIN_ALONE))
     }

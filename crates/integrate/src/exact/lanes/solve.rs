@@ -6,10 +6,11 @@
 
 use pulp::Simd;
 
-use super::joint::{Acting, JointLanes};
+use super::joint::JointLanes;
 use super::wide::Wide;
 use super::{LANES, Pack};
 use crate::exact::dry::{DryStep, Level};
+use crate::exact::joint::Role;
 use crate::exact::law::{Followed, MemberMotion, Tangent};
 use crate::exact::plant::AT_REST;
 
@@ -65,8 +66,8 @@ impl<L: LawLanes> Level for LevelOf<'_, L> {
 
 /// What the laws say at a trial of S of their joint: D of the one that rubs, which moves the joint, then its part of S.
 #[inline(always)]
-pub(super) fn act<S: Simd>(simd: S, laws: &impl LawLanes, is: Acting, joint: &mut JointLanes) {
-    if is.dry {
+pub(super) fn act<S: Simd>(simd: S, laws: &impl LawLanes, role: Role, joint: &mut JointLanes) {
+    if role.dry {
         let velocity = Wide::of(simd, &joint.velocity);
         let [mean, end, stiffness] = dry_forces(simd, laws, joint, velocity);
         let [give, give_velocity] = joint.dry_compliance.each_ref();
@@ -77,7 +78,7 @@ pub(super) fn act<S: Simd>(simd: S, laws: &impl LawLanes, is: Acting, joint: &mu
         joint.dry = [mean.pack(), end, stiffness];
     }
     let at = [joint.displacement, joint.velocity, joint.time_s];
-    joint.force = if is.remembering {
+    joint.force = if role.remembering {
         let (memory, from) = (joint.memory, joint.from);
         let [force, _] = follow(laws, &memory, [&from, &at], &joint.step_s);
         force

@@ -1,5 +1,7 @@
 //! What drives eight sets.
 
+use std::ops::Range;
+
 use pulp::Simd;
 
 use super::set::LaneSet;
@@ -40,32 +42,33 @@ pub(super) fn sources<'a>(sets: &[&LaneSet<'a>; LANES]) -> Vec<Source<'a>> {
     sources
 }
 
-/// Takes a part of the excitations at a sample, one value for each pack.
+/// Takes a part of the excitations at samples in a row, a row of packs for each; where one is over, it stays at its last.
 #[inline(always)]
 pub(super) fn fill<'a, S: Simd>(
     simd: S,
     sources: &[Source<'a>],
-    sample: usize,
-    out: &mut [Pack],
+    samples: Range<usize>,
+    (out, width): (&mut [Pack], usize),
     values: impl Fn(&Excitation<'a>) -> &'a [f64],
 ) {
+    if width == 0 {
+        return;
+    }
     for (k, source) in sources.iter().enumerate() {
-        let row = values_at(values(&source.excitation), sample, source.count, out.len());
+        let values = values(&source.excitation);
         let lanes = Which::of(simd, &source.lanes);
-        for (out, value) in out.iter_mut().zip(row) {
-            let value = Wide::splat(simd, *value);
-            *out = if k == 0 {
-                value.pack()
-            } else {
-                lanes.choose(value, Wide::of(simd, out)).pack()
-            };
+        let last = source.count.saturating_sub(1);
+        for (sample, out) in samples.clone().zip(out.chunks_exact_mut(width)) {
+            let at = sample.min(last) * width;
+            let row = values.get(at..at + width).unwrap_or(&[]);
+            for (out, value) in out.iter_mut().zip(row) {
+                let value = Wide::splat(simd, *value);
+                *out = if k == 0 {
+                    value.pack()
+                } else {
+                    lanes.choose(value, Wide::of(simd, out)).pack()
+                };
+            }
         }
     }
-}
-
-/// The values at a sample, or at the last where that is over.
-#[inline(always)]
-fn values_at(values: &[f64], sample: usize, count: usize, width: usize) -> &[f64] {
-    let at = sample.min(count.saturating_sub(1)) * width;
-    values.get(at..at + width).unwrap_or(&[])
 }
