@@ -1,6 +1,7 @@
 //! Elements at one port, which move alike and are solved as one.
 
 use super::law::Element;
+use super::role::Role;
 
 /// Elements at one port: they see the same motion, and what moves the plant is the sum of their forces. One of them at most
 /// rubs, and one at most remembers: what does so beside another of its kind has a joint of its own, as has what is solved
@@ -15,15 +16,6 @@ pub(super) struct Joint {
     pub(super) remembers: Option<usize>,
     /// Whether it is solved together with the other joints of this kind, by Newton's method.
     pub(super) has_tangent: bool,
-}
-
-/// What a law is at its joint.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Role {
-    /// The one that rubs.
-    pub(super) dry: bool,
-    /// The one that remembers.
-    pub(super) remembering: bool,
 }
 
 impl Joint {

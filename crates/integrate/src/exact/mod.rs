@@ -12,6 +12,7 @@ mod march;
 mod members;
 mod plant;
 mod propagator;
+mod role;
 mod secant;
 mod together;
 

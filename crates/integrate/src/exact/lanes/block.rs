@@ -198,12 +198,12 @@ impl<'a> Block<'a> {
         &mut self,
         simd: S,
         [state, next]: [&mut State<R>; 2],
-        [before, after]: [&mut R; 2],
+        (before, after): (&mut R, &[Pack]),
         base: [&[Pack]; 2],
         steps: usize,
     ) {
         self.spread_smooth(simd, before);
-        let forces = [before.packs(), after.packs()];
+        let forces = [before.packs(), after];
         self.kernel.step(simd, state, forces, next);
         if !self.joints.is_empty() {
             self.solve(simd, next, base, steps);

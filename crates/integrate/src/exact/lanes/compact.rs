@@ -153,8 +153,8 @@ impl Compact {
             arch,
             step,
             end,
+            column: vec![Pack::ZERO; wide],
             columns,
-            column: Vec::with_capacity(wide),
             sums: vec![Pack::ZERO; rows.next_multiple_of(ROWS)],
         }
     }
@@ -168,13 +168,16 @@ impl Compact {
     ) {
         let (x, v) = (state.displacement.packs(), state.velocity.packs());
         let n = x.len();
-        self.column.clear();
-        for force in forces {
-            self.column
-                .extend(self.columns.pushed.iter().map(|i| force[*i]));
+        let Columns { pushed, moving, .. } = &self.columns;
+        let (of_forces, of_state) = self.column.split_at_mut(2 * pushed.len());
+        for (column, force) in of_forces.chunks_exact_mut(pushed.len().max(1)).zip(forces) {
+            for (value, i) in column.iter_mut().zip(pushed) {
+                *value = force[*i];
+            }
         }
-        let at = |&i: &usize| if i < n { x[i] } else { v[i - n] };
-        self.column.extend(self.columns.moving.iter().map(at));
+        for (value, &i) in of_state.iter_mut().zip(moving) {
+            *value = if i < n { x[i] } else { v[i - n] };
+        }
         self.sums.fill(Pack::ZERO);
         self.step
             .add_product(self.arch, &self.column, &mut self.sums);
@@ -183,11 +186,12 @@ impl Compact {
 
     /// Adds Γ₁ f to `next`, the result of the last step, f being zero where no element pushes.
     pub(super) fn push_end<R: Row>(&mut self, force: &[Pack], next: &mut State<R>) {
-        self.column.clear();
-        let joined = self.columns.joined.iter();
-        self.column.extend(joined.map(|i| force[*i]));
-        self.end
-            .add_product(self.arch, &self.column, &mut self.sums);
+        let joined = &self.columns.joined;
+        let column = &mut self.column[..joined.len()];
+        for (value, i) in column.iter_mut().zip(joined) {
+            *value = force[*i];
+        }
+        self.end.add_product(self.arch, column, &mut self.sums);
         self.deliver(next);
     }
 

@@ -16,7 +16,7 @@ pub(super) struct Drive<R> {
     /// Displacements and velocities of the bases.
     base: [Vec<Pack>; 2],
     bases: usize,
-    pub(super) zero: R,
+    zero: R,
 }
 
 impl<R: Row> Drive<R> {
@@ -36,7 +36,11 @@ impl<R: Row> Drive<R> {
     pub(super) fn load<S: Simd>(&mut self, simd: S, lanes: &Eight<'_>, samples: Range<usize>) {
         let (n, bases) = (self.zero.packs().len(), self.bases);
         let sources = &lanes.sources;
-        let next = |values: &'_ mut Vec<Pack>, width: usize| values.copy_within(SHOWN * width.., 0);
+        // The last row is the sample before.
+        let next = |values: &'_ mut Vec<Pack>, width: usize| {
+            let last = values.len() - width;
+            values.copy_within(last.., 0);
+        };
         next(&mut self.force, n);
         let force = (&mut self.force[n..], n);
         fill(simd, sources, samples.clone(), force, |e| e.dof_force);

@@ -4,7 +4,7 @@ use pulp::{Arch, Simd};
 
 use super::wide::Wide;
 use super::{Mask, Pack};
-use crate::exact::joint::Role;
+use crate::exact::role::Role;
 
 /// One law with the parameters of eight sets. Made by [`gather`](super::gather), or lane by lane for laws that
 /// do not offer [`ForceLaw::lanes`](crate::exact::ForceLaw::lanes).

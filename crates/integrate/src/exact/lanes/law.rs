@@ -9,8 +9,8 @@ use super::settle::{Acting, settle};
 use super::solve::{self, LawLanes};
 use super::wide::Wide;
 use super::{LANES, Mask, Pack};
-use crate::exact::joint::Role;
 use crate::exact::law::{Followed, ForceLaw, MemberMotion, Tangent};
+use crate::exact::role::Role;
 
 /// The parameters of eight laws of one type, and how they become a law again.
 struct Gathered<F, const K: usize> {

@@ -30,14 +30,14 @@ impl<R: Row> WithSimd for March<'_, '_, R> {
         let March(mut lanes, zero, observer) = self;
         let rows = PortRows::new(&lanes.block, &zero);
         let is_linear = lanes.block.joints.is_empty() && lanes.sets[0].excitation.substeps <= 1;
-        let mut state = lanes.start(&zero);
+        let mut at = At::new(&lanes, &zero);
         let mut drive = Drive::new(&lanes, &zero);
         let mut seen = Seen::new(&lanes, &zero, observer);
         for first in (0..lanes.sample_count).step_by(SHOWN) {
             let samples = first..lanes.sample_count.min(first + SHOWN);
             drive.load(simd, &lanes, samples.clone());
             // A loop for each: what solves for more forces would take the state out of the registers.
-            let along = (&drive, &mut state, &mut seen);
+            let along = (&drive, &mut at, &mut seen);
             if is_linear {
                 propagate(simd, &mut lanes, along, samples.clone());
             } else if let Some(rows) = &rows {
@@ -51,16 +51,38 @@ impl<R: Row> WithSimd for March<'_, '_, R> {
     }
 }
 
+/// Where eight sets are, with room for the next state and for what drives a step between two samples.
+struct At<R> {
+    state: State<R>,
+    next: State<R>,
+    before: R,
+    after: R,
+    base: [Vec<Pack>; 2],
+}
+
+impl<R: Row> At<R> {
+    fn new(lanes: &Eight<'_>, zero: &R) -> At<R> {
+        let bases = vec![Pack::ZERO; lanes.sets[0].excitation.base_count];
+        let state = lanes.start(zero);
+        At {
+            next: state.clone(),
+            state,
+            before: zero.clone(),
+            after: zero.clone(),
+            base: [bases.clone(), bases],
+        }
+    }
+}
+
 /// Through samples where nothing but the linear part is.
 #[inline(always)]
 fn propagate<S: Simd, R: Row>(
     simd: S,
     lanes: &mut Eight<'_>,
-    (drive, at, seen): (&Drive<R>, &mut State<R>, &mut Seen<R>),
+    (drive, at, seen): (&Drive<R>, &mut At<R>, &mut Seen<R>),
     samples: Range<usize>,
 ) {
-    let mut state = at.clone();
-    let mut next = at.clone();
+    let (mut state, mut next) = (at.state.lend(), at.next.lend());
     let mut begun = 0;
     if samples.start == 0 {
         seen.take(0, &state);
@@ -72,7 +94,7 @@ fn propagate<S: Simd, R: Row>(
         state.take_over(&mut next);
         seen.take(k, &state);
     }
-    *at = state;
+    (at.state, at.next) = (state, next);
 }
 
 /// Joints that a step solves for.
@@ -82,7 +104,8 @@ trait Joints<R> {
         &self,
         simd: S,
         block: &mut Block<'_>,
-        states_and_forces: ([&mut State<R>; 2], [&mut R; 2]),
+        states: [&mut State<R>; 2],
+        forces: (&mut R, &[Pack]),
         base_and_steps: ([&[Pack]; 2], usize),
     );
 }
@@ -96,7 +119,8 @@ impl<R: Row> Joints<R> for AnyJoints {
         &self,
         simd: S,
         block: &mut Block<'_>,
-        (states, forces): ([&mut State<R>; 2], [&mut R; 2]),
+        states: [&mut State<R>; 2],
+        forces: (&mut R, &[Pack]),
         (base, steps): ([&[Pack]; 2], usize),
     ) {
         block.step(simd, states, forces, base, steps);
@@ -109,7 +133,8 @@ impl<R: Row> Joints<R> for PortRows<R> {
         &self,
         simd: S,
         block: &mut Block<'_>,
-        (states, forces): ([&mut State<R>; 2], [&mut R; 2]),
+        states: [&mut State<R>; 2],
+        forces: (&mut R, &[Pack]),
         base_and_steps: ([&[Pack]; 2], usize),
     ) {
         block.step_of_one(simd, self, states, forces, base_and_steps);
@@ -137,33 +162,35 @@ fn advance<S: Simd, R: Row>(
     simd: S,
     joints: &impl Joints<R>,
     lanes: &mut Eight<'_>,
-    (drive, at, seen): (&Drive<R>, &mut State<R>, &mut Seen<R>),
+    (drive, at, seen): (&Drive<R>, &mut At<R>, &mut Seen<R>),
     samples: Range<usize>,
 ) {
     let substeps = lanes.sets[0].excitation.substeps.max(1);
     let share = 1.0 / substeps as f64;
-    let mut state = at.clone();
-    let mut next = at.clone();
-    let [mut before, mut after] = [drive.zero.clone(), drive.zero.clone()];
-    let [x, v] = drive.base(0);
-    let (mut x, mut v) = (x.to_vec(), v.to_vec());
+    let (mut state, mut next) = (at.state.lend(), at.next.lend());
+    let (mut before, mut after) = (at.before.lend(), at.after.lend());
+    let [x, v] = &mut at.base;
     for (k, sample) in samples.enumerate() {
-        let forces = drive.forces(k);
+        let [from, to] = drive.forces(k);
+        let bases = [drive.base(k), drive.base(k + 1)];
         for sub in 0..if sample == 0 { 0 } else { substeps } {
             let (start, end) = (sub as f64 * share, (sub + 1) as f64 * share);
             let steps = (sample - 1) * substeps + sub + 1;
-            between(simd, forces, start, before.packs_mut());
-            between(simd, forces, end, after.packs_mut());
-            let [from, to] = [drive.base(k), drive.base(k + 1)];
-            between(simd, [from[0], to[0]], end, &mut x);
-            between(simd, [from[1], to[1]], end, &mut v);
+            between(simd, [from, to], start, before.packs_mut());
+            let (mut after_step, mut base) = (to, bases[1]);
+            if substeps > 1 {
+                between(simd, [from, to], end, after.packs_mut());
+                between(simd, bases.map(|[x, _]| x), end, x);
+                between(simd, bases.map(|[_, v]| v), end, v);
+                (after_step, base) = (after.packs(), [&x[..], &v[..]]);
+            }
             let states = [&mut state, &mut next];
-            let forces = [&mut before, &mut after];
-            let base: [&[Pack]; 2] = [&x, &v];
-            joints.step(simd, &mut lanes.block, (states, forces), (base, steps));
+            let forces = (&mut before, after_step);
+            joints.step(simd, &mut lanes.block, states, forces, (base, steps));
         }
         seen.take(k, &state);
         seen.take_forces(simd, k, &lanes.block);
     }
-    *at = state;
+    (at.state, at.next) = (state, next);
+    (at.before, at.after) = (before, after);
 }

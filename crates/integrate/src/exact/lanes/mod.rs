@@ -33,7 +33,7 @@ mod together;
 mod trial;
 mod wide;
 
-pub use super::joint::Role;
+pub use super::role::Role;
 pub use batch::Batch;
 pub use joint::{JointLanes, LaneLaw};
 pub use law::{PackLaw, gather, together};

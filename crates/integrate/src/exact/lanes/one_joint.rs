@@ -83,11 +83,11 @@ impl Block<'_> {
         simd: S,
         rows: &PortRows<R>,
         [state, next]: [&mut State<R>; 2],
-        [before, after]: [&mut R; 2],
+        (before, after): (&mut R, &[Pack]),
         ([base_x, base_v], steps): ([&[Pack]; 2], usize),
     ) {
         push(simd, &rows.push, &self.joints[0].smooth, before);
-        let forces = [before.packs(), after.packs()];
+        let forces = [before.packs(), after];
         self.kernel.step(simd, state, forces, next);
         let free = [
             read(simd, &rows.displacement, &next.displacement, base_x),

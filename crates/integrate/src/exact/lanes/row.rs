@@ -11,6 +11,9 @@ pub(super) trait Row: Clone {
 
     /// Takes the place of `other`, which is room afterwards.
     fn take_over(&mut self, other: &mut Self);
+
+    /// The row itself, for a while: what is left in its place is not looked at.
+    fn lend(&mut self) -> Self;
 }
 
 impl<const N: usize> Row for [Pack; N] {
@@ -27,6 +30,11 @@ impl<const N: usize> Row for [Pack; N] {
     #[inline(always)]
     fn take_over(&mut self, other: &mut Self) {
         *self = *other;
+    }
+
+    #[inline(always)]
+    fn lend(&mut self) -> Self {
+        *self
     }
 }
 
@@ -45,6 +53,11 @@ impl Row for Vec<Pack> {
     fn take_over(&mut self, other: &mut Self) {
         std::mem::swap(self, other);
     }
+
+    #[inline(always)]
+    fn lend(&mut self) -> Self {
+        std::mem::take(self)
+    }
 }
 
 /// Where eight plants are: x and ẋ.
@@ -58,6 +71,15 @@ impl<R: Row> State<R> {
     #[inline(always)]
     pub(super) fn packs(&self) -> [&[Pack]; 2] {
         [self.displacement.packs(), self.velocity.packs()]
+    }
+
+    /// As [`Row::lend`].
+    #[inline(always)]
+    pub(super) fn lend(&mut self) -> State<R> {
+        State {
+            displacement: self.displacement.lend(),
+            velocity: self.velocity.lend(),
+        }
     }
 
     /// Takes the place of `other`, which is room afterwards.

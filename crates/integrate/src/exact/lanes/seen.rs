@@ -113,7 +113,10 @@ impl<R: Row> Seen<R> {
             count: samples.len(),
             displacement: Rows::new(&self.displacement, n),
             velocity: Rows::new(&self.velocity, n),
-            acceleration: Rows::new(&self.acceleration, self.acceleration.len() / SHOWN),
+            acceleration: Rows::new(
+                &self.acceleration,
+                if self.needed.is_needed() { n } else { 0 },
+            ),
             element_force: Rows::new(&self.carried, self.elements),
             base: drive.bases(),
         };

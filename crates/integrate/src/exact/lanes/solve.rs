@@ -10,9 +10,9 @@ use super::joint::JointLanes;
 use super::wide::Wide;
 use super::{LANES, Pack};
 use crate::exact::dry::{DryStep, Level};
-use crate::exact::joint::Role;
 use crate::exact::law::{Followed, MemberMotion, Tangent};
 use crate::exact::plant::AT_REST;
+use crate::exact::role::Role;
 
 /// What the laws of the eight sets say.
 pub(super) trait LawLanes {
