@@ -6,27 +6,24 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use simgap_diagnose::Stage;
 
-/// The stages of a diagnosis and how much of its time has passed at their end, where it goes through all of them: the mean of six with
-/// short records, on three real and three generated machines, and of seven with long ones, weighed alike. One that ends before is done sooner
-/// than is said.
-const STAGES: [(Stage, f64); 15] = [
-    (Stage::NominalModel, 0.01),
-    (Stage::NominalParameters, 0.015),
-    (Stage::Singles, 0.03),
-    (Stage::SinglesFromManyValues, 0.06),
-    (Stage::BesideParameters, 0.15),
-    (Stage::Pairs, 0.26),
-    (Stage::PairsFromManyValues, 0.31),
-    (Stage::Threes, 0.35),
-    (Stage::Stretches, 0.62),
-    (Stage::AllSamples, 0.68),
-    (Stage::Colour, 0.70),
-    (Stage::Changes, 0.95),
-    (Stage::Posterior, 0.98),
-    (Stage::FinalFit, 0.985),
-    (Stage::CheckRecords, 1.0),
+/// The shares of a diagnosis that have passed where a stage begins and where it ends: medians over 42 diagnoses of generated and real machines that took
+/// 2.5 s or more. Most end after single effects, and before that is known nothing is said. From then on, nine of ten guesses
+/// in these diagnoses were between .6 and 1.6 of the time that was left, and a second.
+const STAGES: [(Stage, [f64; 2]); 12] = [
+    (Stage::SinglesFromManyValues, [0.05, 0.09]),
+    (Stage::BesideParameters, [0.09, 0.17]),
+    (Stage::Pairs, [0.17, 0.32]),
+    (Stage::PairsFromManyValues, [0.32, 0.43]),
+    (Stage::Threes, [0.43, 0.47]),
+    (Stage::Stretches, [0.47, 0.61]),
+    (Stage::AllSamples, [0.53, 0.61]),
+    (Stage::Colour, [0.53, 0.73]),
+    (Stage::Changes, [0.73, 0.88]),
+    (Stage::Posterior, [0.88, 0.95]),
+    (Stage::FinalFit, [0.95, 0.96]),
+    (Stage::CheckRecords, [0.96, 1.0]),
 ];
-/// Before that, a guess of what is left would be none.
+/// Before so much has passed nothing is said either.
 const SURE_AFTER: Duration = Duration::from_secs(2);
 
 /// Where the work stands.
@@ -52,7 +49,7 @@ impl Steps {
             started: Instant::now(),
             passed: Duration::ZERO,
             from: 0.0,
-            to: STAGES[0].1,
+            to: 1.0,
         }));
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
         let shown = Arc::clone(&standing);
@@ -61,7 +58,7 @@ impl Steps {
                 return;
             };
             if let Some(left) = left(standing, standing.started.elapsed()) {
-                let _ = write!(out, ", up to {} s left", left.as_secs().max(1));
+                let _ = write!(out, ", about {} s left", left.as_secs().max(1));
             }
         };
         if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}{left}") {
@@ -82,14 +79,13 @@ impl Steps {
 impl Standing {
     /// Where it stands when a step begins; a step that is not known goes on with the one before.
     fn next(self, step: &str, passed: Duration) -> Standing {
-        let Some(index) = STAGES.iter().position(|(stage, _)| stage.name() == step) else {
+        let Some((_, [from, to])) = STAGES.iter().find(|(stage, _)| stage.name() == step) else {
             return self;
         };
-        let from = index.checked_sub(1).map_or(0.0, |before| STAGES[before].1);
         Standing {
             passed,
-            from,
-            to: STAGES[index].1,
+            from: *from,
+            to: *to,
             ..self
         }
     }
@@ -142,13 +138,21 @@ mod tests {
         let next = standing.next("something else", Duration::from_secs(11));
         assert_eq!((next.from, next.passed), (0.5, Duration::from_secs(10)));
         let next = standing.next(Stage::Threes.name(), Duration::from_secs(20));
-        assert_eq!((next.from, next.to), (0.31, 0.35));
+        assert_eq!((next.from, next.to), (0.43, 0.47));
+        // Nothing is known while most diagnoses still may end.
+        let early = first.next(Stage::Singles.name(), Duration::from_secs(3));
+        assert_eq!(left(early, Duration::from_secs(5)), None);
     }
 
     #[test]
     fn verify_shares_rise_to_the_whole() {
-        assert!(STAGES.windows(2).all(|pair| pair[0].1 < pair[1].1));
-        assert_eq!(STAGES.map(|(stage, _)| stage), Stage::ALL);
-        assert_eq!(STAGES[STAGES.len() - 1].1, 1.0);
+        assert!(
+            STAGES
+                .iter()
+                .all(|(_, [from, to])| 0.0 < *from && from < to)
+        );
+        assert!(STAGES.windows(2).all(|pair| pair[0].1[0] <= pair[1].1[0]));
+        assert_eq!(STAGES.map(|(stage, _)| stage)[..], Stage::ALL[3..]);
+        assert_eq!(STAGES[STAGES.len() - 1].1[1], 1.0);
     }
 }
