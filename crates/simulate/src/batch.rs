@@ -192,7 +192,7 @@ struct Recorder<'a> {
     /// Stiffness and damping of the members each output sees.
     coefficients: Vec<[Pack; 2]>,
     ready: [&'a Prepared; LANES],
-    /// Those of an output at the samples that are shown.
+    /// Room for the values of an output at the samples that are shown.
     values: Vec<Pack>,
     signals: Vec<Vec<Vec<f64>>>,
 }

@@ -10,6 +10,8 @@ use crate::exact::propagator::ExactPropagator;
 /// `ẍ = M⁻¹ (f − C ẋ − K x)` without what is zero in all sets: most masses are joined to few others, and an accelerometer
 /// sees one of them.
 pub(super) struct Acceleration {
+    /// Coordinates of a sample; none where nobody looks at any.
+    pub(super) width: usize,
     nets: Vec<Net>,
     rows: Vec<Read>,
     /// Room for the net forces.
@@ -62,14 +64,11 @@ impl Acceleration {
             }
         };
         Acceleration {
+            width: if is_read.is_empty() { 0 } else { n },
             nets: pushing.iter().map(net).collect(),
             rows: is_read.iter().map(read).collect(),
             net: vec![Pack::ZERO; pushing.len()],
         }
-    }
-
-    pub(super) fn is_needed(&self) -> bool {
-        !self.rows.is_empty()
     }
 
     /// Writes down those at a state under forces, m/s².

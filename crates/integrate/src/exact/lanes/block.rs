@@ -190,28 +190,6 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// One step under the forces at its two ends, with the bases where they are at its end;
-    /// `steps` counts from the first sample. The state after it takes the place of the first,
-    /// the second is room; the first of the forces is used up.
-    #[inline(always)]
-    pub(super) fn step<S: Simd, R: Row>(
-        &mut self,
-        simd: S,
-        [state, next]: [&mut State<R>; 2],
-        (before, after): (&mut R, &[Pack]),
-        base: [&[Pack]; 2],
-        steps: usize,
-    ) {
-        self.spread_smooth(simd, before);
-        let forces = [before.packs(), after];
-        self.kernel.step(simd, state, forces, next);
-        if !self.joints.is_empty() {
-            self.solve(simd, next, base, steps);
-            self.push(simd, before, next);
-        }
-        state.take_over(next);
-    }
-
     /// When so many steps have passed, s.
     #[inline(always)]
     pub(super) fn time_s<S: Simd>(&self, simd: S, steps: usize) -> Pack {
@@ -221,7 +199,7 @@ impl<'a> Block<'a> {
 
     /// Forces of the elements at the end of the step.
     #[inline(always)]
-    fn solve<S: Simd, R: Row>(
+    pub(super) fn solve<S: Simd, R: Row>(
         &mut self,
         simd: S,
         next: &State<R>,
@@ -292,7 +270,7 @@ impl<'a> Block<'a> {
 
     /// Adds what the forces of the elements do to the state; `net` is room.
     #[inline(always)]
-    fn push<S: Simd, R: Row>(&mut self, simd: S, net: &mut R, next: &mut State<R>) {
+    pub(super) fn push<S: Simd, R: Row>(&mut self, simd: S, net: &mut R, next: &mut State<R>) {
         net.packs_mut().fill(Pack::ZERO);
         self.spread_smooth(simd, net);
         self.kernel.push_end(simd, net, next);
@@ -308,7 +286,7 @@ impl<'a> Block<'a> {
 
     /// Adds what S of all joints does to the degrees of freedom.
     #[inline(always)]
-    fn spread_smooth<S: Simd, R: Row>(&self, simd: S, net: &mut R) {
+    pub(super) fn spread_smooth<S: Simd, R: Row>(&self, simd: S, net: &mut R) {
         for (joint, place) in self.joints.iter().zip(&self.places) {
             let port = self.ports[place.elements[0]];
             spread(simd, port.force, &joint.smooth, net.packs_mut());

@@ -120,6 +120,14 @@ fn add_product<S: Simd, E: Entry>(
     }
 }
 
+/// Takes the entries of a row at these coordinates.
+#[inline(always)]
+fn collect(row: &[Pack], coordinates: &[usize], out: &mut [Pack]) {
+    for (out, i) in out.iter_mut().zip(coordinates) {
+        *out = row[*i];
+    }
+}
+
 /// Φ, Γ₀ and Γ₁ without their columns of zeros, and room for their products.
 pub(super) struct Compact {
     arch: Arch,
@@ -169,12 +177,10 @@ impl Compact {
         let (x, v) = (state.displacement.packs(), state.velocity.packs());
         let n = x.len();
         let Columns { pushed, moving, .. } = &self.columns;
-        let (of_forces, of_state) = self.column.split_at_mut(2 * pushed.len());
-        for (column, force) in of_forces.chunks_exact_mut(pushed.len().max(1)).zip(forces) {
-            for (value, i) in column.iter_mut().zip(pushed) {
-                *value = force[*i];
-            }
-        }
+        let (before, rest) = self.column.split_at_mut(pushed.len());
+        let (after, of_state) = rest.split_at_mut(pushed.len());
+        collect(forces[0], pushed, before);
+        collect(forces[1], pushed, after);
         for (value, &i) in of_state.iter_mut().zip(moving) {
             *value = if i < n { x[i] } else { v[i - n] };
         }
@@ -188,9 +194,7 @@ impl Compact {
     pub(super) fn push_end<R: Row>(&mut self, force: &[Pack], next: &mut State<R>) {
         let joined = &self.columns.joined;
         let column = &mut self.column[..joined.len()];
-        for (value, i) in column.iter_mut().zip(joined) {
-            *value = force[*i];
-        }
+        collect(force, joined, column);
         self.end.add_product(self.arch, column, &mut self.sums);
         self.deliver(next);
     }

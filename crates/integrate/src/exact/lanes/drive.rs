@@ -64,8 +64,10 @@ impl<R: Row> Drive<R> {
     #[inline(always)]
     pub(super) fn base(&self, k: usize) -> [&[Pack]; 2] {
         let [x, v] = &self.base;
-        let row = k * self.bases..(k + 1) * self.bases;
-        [&x[row.clone()], &v[row]]
+        [
+            Rows::new(x, self.bases).at(k),
+            Rows::new(v, self.bases).at(k),
+        ]
     }
 
     /// Those at the samples, from the first on, row by row.

@@ -21,12 +21,7 @@ pub(super) struct LaneKernel {
 
 /// `sum` and the product of a row of a matrix with a column.
 #[inline(always)]
-pub(super) fn add_products<S: Simd>(
-    simd: S,
-    mut sum: Wide<S>,
-    matrix: &[Pack],
-    column: &[Pack],
-) -> Wide<S> {
+fn add_products<S: Simd>(simd: S, mut sum: Wide<S>, matrix: &[Pack], column: &[Pack]) -> Wide<S> {
     for (entry, value) in matrix.iter().zip(column) {
         sum += Wide::of(simd, entry) * Wide::of(simd, value);
     }
@@ -74,7 +69,9 @@ impl LaneKernel {
     ) {
         let (x, v) = (state.displacement.packs(), state.velocity.packs());
         let n = x.len();
-        if let Some(compact) = self.compact.as_mut().filter(|_| n > COMPARED) {
+        if n > COMPARED
+            && let Some(compact) = &mut self.compact
+        {
             compact.step(state, [before, after], next);
             return;
         }
@@ -98,7 +95,9 @@ impl LaneKernel {
     #[inline(always)]
     pub(super) fn push_end<S: Simd, R: Row>(&mut self, simd: S, force: &R, next: &mut State<R>) {
         let n = force.packs().len();
-        if let Some(compact) = self.compact.as_mut().filter(|_| n > COMPARED) {
+        if n > COMPARED
+            && let Some(compact) = &mut self.compact
+        {
             compact.push_end(force.packs(), next);
             return;
         }

@@ -5,13 +5,13 @@ use std::ops::Range;
 use pulp::{Simd, WithSimd};
 
 use super::Pack;
-use super::block::Block;
 use super::drive::Drive;
 use super::eight::Eight;
 use super::observer::{SHOWN, Watch};
 use super::one_joint::PortRows;
 use super::row::{Row, State};
 use super::seen::Seen;
+use super::step::{AnyJoints, Joints, Step};
 use super::wide::Wide;
 
 /// The march of a block in the best instructions there are; a closure would not be inlined into
@@ -97,50 +97,6 @@ fn propagate<S: Simd, R: Row>(
     (at.state, at.next) = (state, next);
 }
 
-/// Joints that a step solves for.
-trait Joints<R> {
-    /// [`Block::step`].
-    fn step<S: Simd>(
-        &self,
-        simd: S,
-        block: &mut Block<'_>,
-        states: [&mut State<R>; 2],
-        forces: (&mut R, &[Pack]),
-        base_and_steps: ([&[Pack]; 2], usize),
-    );
-}
-
-/// Those that a block has.
-struct AnyJoints;
-
-impl<R: Row> Joints<R> for AnyJoints {
-    #[inline(always)]
-    fn step<S: Simd>(
-        &self,
-        simd: S,
-        block: &mut Block<'_>,
-        states: [&mut State<R>; 2],
-        forces: (&mut R, &[Pack]),
-        (base, steps): ([&[Pack]; 2], usize),
-    ) {
-        block.step(simd, states, forces, base, steps);
-    }
-}
-
-impl<R: Row> Joints<R> for PortRows<R> {
-    #[inline(always)]
-    fn step<S: Simd>(
-        &self,
-        simd: S,
-        block: &mut Block<'_>,
-        states: [&mut State<R>; 2],
-        forces: (&mut R, &[Pack]),
-        base_and_steps: ([&[Pack]; 2], usize),
-    ) {
-        block.step_of_one(simd, self, states, forces, base_and_steps);
-    }
-}
-
 /// `from + share (to − from)`, to the last bit what is at an end.
 #[inline(always)]
 fn between<S: Simd>(simd: S, [from, to]: [&[Pack]; 2], share: f64, out: &mut [Pack]) {
@@ -184,9 +140,14 @@ fn advance<S: Simd, R: Row>(
                 between(simd, bases.map(|[_, v]| v), end, v);
                 (after_step, base) = (after.packs(), [&x[..], &v[..]]);
             }
-            let states = [&mut state, &mut next];
-            let forces = (&mut before, after_step);
-            joints.step(simd, &mut lanes.block, states, forces, (base, steps));
+            let step = Step {
+                states: [&mut state, &mut next],
+                before: &mut before,
+                after: after_step,
+                base,
+                steps,
+            };
+            joints.step(simd, &mut lanes.block, step);
         }
         seen.take(k, &state);
         seen.take_forces(simd, k, &lanes.block);

@@ -29,6 +29,7 @@ mod set;
 mod settle;
 mod solve;
 mod source;
+mod step;
 mod together;
 mod trial;
 mod wide;

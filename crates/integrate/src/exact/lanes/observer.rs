@@ -15,12 +15,13 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
+    #[inline(always)]
     pub(super) fn new(values: &'a [Pack], width: usize) -> Rows<'a> {
         Rows { values, width }
     }
 
     #[inline(always)]
-    fn at(&self, k: usize) -> &'a [Pack] {
+    pub(super) fn at(&self, k: usize) -> &'a [Pack] {
         &self.values[k * self.width..(k + 1) * self.width]
     }
 }

@@ -29,7 +29,7 @@ impl<R: Row> Seen<R> {
         let n = zero.packs().len();
         let is_read = |i: usize| observer.reads_acceleration(i);
         let needed = Acceleration::new(&lanes.sets, n, &is_read);
-        let needs_forces = needed.is_needed() || observer.reads_forces();
+        let needs_forces = needed.width > 0 || observer.reads_forces();
         let elements = if needs_forces {
             lanes.block.laws.len()
         } else {
@@ -39,7 +39,7 @@ impl<R: Row> Seen<R> {
         Seen {
             displacement: room(n),
             velocity: room(n),
-            acceleration: room(if needed.is_needed() { n } else { 0 }),
+            acceleration: room(needed.width),
             carried: room(elements),
             elements,
             needed,
@@ -73,15 +73,15 @@ impl<R: Row> Seen<R> {
         samples: Range<usize>,
     ) {
         let n = self.net.packs().len();
-        let is_needed = self.needed.is_needed();
+        let is_needed = self.needed.width > 0;
         let is_spread = self.elements > 0 && lanes.block.spread.contains(&true);
         if !is_needed && !is_spread {
             return;
         }
         for (k, sample) in samples.enumerate() {
             let state = [
-                &*row(&mut self.displacement, n, k),
-                &*row(&mut self.velocity, n, k),
+                Rows::new(&self.displacement, n).at(k),
+                Rows::new(&self.velocity, n).at(k),
             ];
             let carried = row(&mut self.carried, self.elements, k);
             if is_spread {
@@ -113,10 +113,7 @@ impl<R: Row> Seen<R> {
             count: samples.len(),
             displacement: Rows::new(&self.displacement, n),
             velocity: Rows::new(&self.velocity, n),
-            acceleration: Rows::new(
-                &self.acceleration,
-                if self.needed.is_needed() { n } else { 0 },
-            ),
+            acceleration: Rows::new(&self.acceleration, self.needed.width),
             element_force: Rows::new(&self.carried, self.elements),
             base: drive.bases(),
         };
