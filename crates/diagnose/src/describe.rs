@@ -51,15 +51,11 @@ pub(crate) fn verdict(
     let named: Vec<NamedEffect> = decision
         .order()
         .into_iter()
-        .enumerate()
-        .map(|(place, i)| {
+        .map(|i| {
             let effect = &decision.effects[i];
             let intervals = fitted.and_then(|fit| intervals_of(fit, &effect.placed));
-            // The gap is that of the leading effect, of another what is left beside it.
-            let share = match place {
-                0 => own,
-                _ => own.min(1.0 - effect.other),
-            };
+            // What is left beside the other effects is the gap of each.
+            let share = own.min(1.0 - effect.other);
             self::named(effect, share, intervals.unwrap_or_default(), units)
         })
         .collect();

@@ -42,7 +42,8 @@ pub struct Base<'a> {
     /// Of H; without where nothing may be adjusted.
     factor: Option<PartialPivLu<f64>>,
     pub(crate) gradient: Vec<f64>,
-    pub(crate) independent_samples: f64,
+    /// Independent observations that what the fit leaves counts as.
+    pub(crate) observations: f64,
     /// rᵀWr of (2) of [`score`](crate::score()).
     pub(crate) energy: f64,
 }
@@ -111,6 +112,8 @@ pub(crate) struct LinearSystem {
     pub(crate) at: Linearised,
     grams: Vec<Gram>,
     channel_weights: Vec<f64>,
+    /// Independent observations that what is left counts as.
+    observations: f64,
     pub(crate) hessian: Mat<f64>,
     gradient: Vec<f64>,
 }
@@ -147,6 +150,7 @@ impl LinearSystem {
             at,
             grams,
             channel_weights,
+            observations: merit.observations(&variance),
             hessian,
             gradient,
         })
@@ -167,14 +171,10 @@ pub fn linearise_at<'a>(
         at,
         grams,
         channel_weights,
+        observations,
         hessian,
         gradient,
     } = LinearSystem::at(problem, fit, weights)?;
-    let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
-    let shares = weights.effective_share.iter();
-    let filled = shares
-        .enumerate()
-        .map(|(c, rho)| rho * problem.filled_count(c));
     let squared = |run: &Signals| inner(run, run, &channel_weights);
     let energy = at.discrepancy.iter().map(squared).sum();
     let placed: Vec<Placed> = fit.estimate.placed().cloned().collect();
@@ -190,8 +190,7 @@ pub fn linearise_at<'a>(
         weights: channel_weights,
         factor: factorise(&hessian),
         gradient,
-        independent_samples: count * weights.effective_share.iter().sum::<f64>()
-            - filled.sum::<f64>(),
+        observations,
     })
 }
 

@@ -1,14 +1,16 @@
 //! Output-error least squares with unknown noise levels.
 //!
 //! ```text
-//! J(θ) = ½ Σ_c ρ_c N_c ln(V_c(θ) + ε_c²) − Σ_i ln p(θ_i)                   (1)
+//! J(θ) = ½ Σ_c ρ_c N_c ∫ q_c(x) dx/x − Σ_i ln p(θ_i),   x to V_c(θ) + ε_c²   (1)
 //! V_c = Σ r_c² / N_c,   r_c = measured − predicted, channel c             (2)
-//! w_c = ρ_c / (V_c + ε_c²)                                                (3)
+//! w_c = ρ_c q_c / (V_c + ε_c²),   q_c(x) = ζ + (1 − ζ) min(1, (σ_c² + ε_c²)/x),   ζ = α/(α + Σ ρ_c N_c)   (3)
 //! (Jᵀ W J + P + λ diag) δ = Jᵀ W r + ∂ Σ ln p / ∂θ                        (4)
 //! ```
 //!
 //! (1) is the likelihood with the noise variance of each channel concentrated out, ρ_c the share
-//! of independent samples; the sum of (2) is over the samples that the effects say anything about
+//! of independent samples. Of what is left, noise σ² counts in full. What a model misses beyond it, of which samples are no independent
+//! observations, counts as α of them at the most ([`Discrepancy`](crate::Discrepancy); q = 1 and ln(V + ε²) without one): the coarsened
+//! likelihood of \[Miller2019\]. The sum of (2) is over the samples that the effects say anything about
 //! (`reach`); (4) its Gauss-Newton step, damped after Levenberg and Marquardt.
 //! Entries at a physical bound that the step would push further out are held there. How far a step goes is told in `step.rs`.
 //!
@@ -163,8 +165,9 @@ pub(crate) fn fit_with(
             (keep && layout.is_nuisance(place)).then(|| kept[run][place].clone())
         })?;
         // A straight step with much damping may gain little where much is to be gained.
-        let is_short = is_straight && quadratic.decrement() >= weights.converged;
-        if gain >= weights.converged || (exact && is_short) {
+        let least = weights.converged * merit.share(&quadratic.variance);
+        let is_short = is_straight && quadratic.decrement() >= least;
+        if gain >= least || (exact && is_short) {
             exact = !keep;
         } else if exact {
             is_finished = true;

@@ -159,7 +159,7 @@ impl Base<'_> {
         }
         let share = (energy / self.energy).clamp(0.0, 1.0 - 1e-9);
         Some(JointScore {
-            gain: -0.5 * self.independent_samples * (1.0 - share).ln(),
+            gain: -0.5 * self.observations * (1.0 - share).ln(),
             starts,
         })
     }

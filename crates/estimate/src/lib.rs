@@ -108,7 +108,7 @@ pub use joint::{JointScore, joint_scores};
 pub use layout::{Owner, Start};
 pub use merit::misfit;
 pub use outright::score_outright;
-pub use problem::{FitOptions, Problem};
+pub use problem::{Discrepancy, FitOptions, Problem};
 pub use scattered::{ASTRAY, halton};
 pub use score::{Score, score, score_in_place_of, score_shapes};
 pub use spread::spread;

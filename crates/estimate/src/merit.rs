@@ -10,11 +10,21 @@ use crate::{FitOptions, Problem};
 /// The objective (1) and the weights (3) of a fit (`fit.rs`).
 pub(crate) struct Merit<'a> {
     pub(crate) problem: &'a Problem,
-    effective_share: Vec<f64>,
-    floor: Vec<f64>,
-    /// Samples of all runs, and those of each channel that were filled.
-    count: f64,
-    filled: Vec<f64>,
+    channels: Vec<Channel>,
+    /// ζ of (3).
+    exponent: f64,
+}
+
+/// How one channel counts.
+struct Channel {
+    /// ρ_c.
+    effective_share: f64,
+    /// ρ_c N_c.
+    independent: f64,
+    /// ε_c².
+    floor: f64,
+    /// σ_c² + ε_c².
+    noise: f64,
 }
 
 /// [`Fit::misfit`](crate::Fit::misfit) of a model that leaves these mean squares of the channels (squares of their units), under other
@@ -26,23 +36,37 @@ pub fn misfit(problem: &Problem, variance: &[f64], options: &FitOptions) -> f64 
 
 impl<'a> Merit<'a> {
     pub(crate) fn new(problem: &'a Problem, weights: &FitOptions) -> Merit<'a> {
-        let std = problem.output_std();
+        let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
+        let discrepancy = weights.discrepancy.as_ref();
+        let channel = |(c, std): (usize, f64)| {
+            let floor = (weights.floor[c] * std).powi(2).max(f64::MIN_POSITIVE);
+            let noise = discrepancy.map_or(f64::INFINITY, |of| (of.noise[c] * std).powi(2));
+            Channel {
+                effective_share: weights.effective_share[c],
+                independent: weights.effective_share[c] * (count - problem.filled_count(c)),
+                floor,
+                noise,
+            }
+        };
+        let channels: Vec<Channel> = problem
+            .output_std()
+            .into_iter()
+            .enumerate()
+            .map(channel)
+            .collect();
+        let independent: f64 = channels.iter().map(|channel| channel.independent).sum();
+        let exponent =
+            discrepancy.map_or(1.0, |of| of.observations / (of.observations + independent));
         Merit {
             problem,
-            effective_share: weights.effective_share.clone(),
-            floor: std
-                .iter()
-                .zip(&weights.floor)
-                .map(|(s, floor)| (floor * s).powi(2).max(f64::MIN_POSITIVE))
-                .collect(),
-            count: problem.runs.iter().map(|run| run.len as f64).sum(),
-            filled: (0..std.len()).map(|c| problem.filled_count(c)).collect(),
+            channels,
+            exponent,
         }
     }
 
     /// V_c, over the samples within reach.
     pub(crate) fn variance(&self, discrepancy: &[Signals], reach: &Reach) -> Vec<f64> {
-        (0..self.floor.len())
+        (0..self.channels.len())
             .map(|c| {
                 let square = |run: &Signals| dot(&run[c], &run[c]);
                 discrepancy.iter().map(square).sum::<f64>() / reach.count(c).max(1.0)
@@ -65,10 +89,27 @@ impl<'a> Merit<'a> {
 
     /// The first sum of (1).
     fn misfit(&self, variance: &[f64]) -> f64 {
-        let channels = variance.iter().zip(&self.floor);
+        let channels = self.channels.iter().zip(variance);
         channels
-            .zip(self.effective_share.iter().zip(&self.filled))
-            .map(|((v, floor), (rho, filled))| 0.5 * rho * (self.count - filled) * (v + floor).ln())
+            .map(|(channel, v)| 0.5 * channel.independent * channel.log_size(*v, self.exponent))
+            .sum()
+    }
+
+    /// The same as a share of all independent samples.
+    pub(crate) fn share(&self, variance: &[f64]) -> f64 {
+        let all: f64 = self
+            .channels
+            .iter()
+            .map(|channel| channel.independent)
+            .sum();
+        self.observations(variance) / all.max(f64::MIN_POSITIVE)
+    }
+
+    /// Independent observations that what is left counts as.
+    pub(crate) fn observations(&self, variance: &[f64]) -> f64 {
+        let channels = self.channels.iter().zip(variance);
+        channels
+            .map(|(channel, v)| channel.independent * channel.share(*v, self.exponent))
             .sum()
     }
 
@@ -81,11 +122,73 @@ impl<'a> Merit<'a> {
     }
 
     pub(crate) fn weights(&self, variance: &[f64]) -> Vec<f64> {
-        let floor = self.floor.iter().zip(&self.effective_share);
-        variance
-            .iter()
-            .zip(floor)
-            .map(|(v, (floor, rho))| rho / (v + floor))
+        let channels = self.channels.iter().zip(variance);
+        channels
+            .map(|(channel, v)| {
+                channel.effective_share * channel.share(*v, self.exponent) / (v + channel.floor)
+            })
             .collect()
+    }
+}
+
+impl Channel {
+    /// q of (3).
+    fn share(&self, variance: f64, exponent: f64) -> f64 {
+        let of_noise = (self.noise / (variance + self.floor)).min(1.0);
+        exponent + (1.0 - exponent) * of_noise
+    }
+
+    /// The integral of q over ln(V + ε²).
+    fn log_size(&self, variance: f64, exponent: f64) -> f64 {
+        let all = variance + self.floor;
+        if all <= self.noise {
+            return all.ln();
+        }
+        let of_noise = 1.0 - self.noise / all;
+        self.noise.ln() + exponent * (all / self.noise).ln() + (1.0 - exponent) * of_noise
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CHANNEL: Channel = Channel {
+        effective_share: 1.0,
+        independent: 1000.0,
+        floor: 0.1,
+        noise: 1.1,
+    };
+
+    #[test]
+    fn verify_the_weights_are_the_slope_of_the_objective() {
+        let step = 1e-6;
+        for exponent in [0.05, 0.5, 1.0] {
+            for variance in [0.3, 0.999, 1.001, 2.0, 40.0] {
+                let [before, after] =
+                    [-step, step].map(|by| CHANNEL.log_size(variance + by, exponent));
+                let slope = (after - before) / (2.0 * step);
+                let expected = CHANNEL.share(variance, exponent) / (variance + CHANNEL.floor);
+                assert!(
+                    (slope / expected - 1.0).abs() < 1e-7,
+                    "{exponent}, {variance}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn verify_noise_counts_in_full_and_what_is_beyond_it_by_the_exponent() {
+        assert_eq!(CHANNEL.log_size(0.5, 0.05), 0.6_f64.ln());
+        // From far above noise to twice of that.
+        let [near, far] = [1e6, 2e6].map(|variance| CHANNEL.log_size(variance, 0.05));
+        assert!((far - near - 0.05 * 2_f64.ln()).abs() < 1e-6);
+        // All samples count alike where no discrepancy is told from noise.
+        let all = Channel {
+            noise: f64::INFINITY,
+            ..CHANNEL
+        };
+        assert_eq!(all.log_size(1e6, 1.0), (1e6_f64 + 0.1).ln());
+        assert_eq!(all.share(1e6, 1.0), 1.0);
     }
 }

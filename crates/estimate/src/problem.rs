@@ -47,17 +47,29 @@ pub struct FitOptions {
     /// What no set is expected to explain of each channel (accuracy of the simulation, noise of the inputs), over the
     /// standard deviation of the channel.
     pub floor: Vec<f64>,
+    /// What of the residuals is no noise; nothing where all samples count alike.
+    pub discrepancy: Option<Discrepancy>,
     /// Standard deviation of the prior on each nominal parameter, relative to its value; `None` for what the model
     /// states of each.
     pub nominal_std: Option<f64>,
-    /// A step that improves the objective by less than this is the last of a fit. One parameter
-    /// gains half a unit from pure noise.
+    /// A step that improves the objective by less than this, told by all samples (less where they count as a discrepancy), is the last of a
+    /// fit. One parameter gains half a unit from pure noise.
     pub converged: f64,
     /// Keep the sensitivities of nominal parameters and initial states from step to step as long
     /// as the steps succeed: several times faster, with rougher intervals.
     pub keep_nuisance: bool,
     /// Steps after which a fit is left where it is, however well it still goes.
     pub most_steps: usize,
+}
+
+/// How what a model leaves beyond noise counts: no lumped model is exact, and samples of what it misses are no independent observations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Discrepancy {
+    /// Independent observations that it counts as at the most, α.
+    pub observations: f64,
+    /// Noise of each channel with what no set is expected to explain of it, over its standard deviation: within it every independent
+    /// sample counts.
+    pub noise: Vec<f64>,
 }
 
 /// Steps of a fit that is to be finished.
@@ -72,6 +84,7 @@ impl FitOptions {
         FitOptions {
             effective_share: vec![1.0; channels],
             floor: vec![ACCURACY; channels],
+            discrepancy: None,
             nominal_std: None,
             converged: 0.02,
             keep_nuisance: false,

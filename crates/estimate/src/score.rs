@@ -314,7 +314,7 @@ impl Base<'_> {
     pub(crate) fn scored(&self, candidate: &Candidate, values: Vec<f64>, energy: f64) -> Score {
         let share = (energy / self.energy).clamp(0.0, 1.0 - 1e-9);
         Score {
-            gain: -0.5 * self.independent_samples * (1.0 - share).ln(),
+            gain: -0.5 * self.observations * (1.0 - share).ln(),
             share,
             start: Placed::new(candidate.effect, candidate.at.clone(), values),
             initial: None,

@@ -107,7 +107,7 @@ impl Search<'_> {
     }
 
     /// Whether a set leaves nothing but noise ([`Search::noise_of`] it). What a converter rounds off looks like noise, and is explained by its steps.
-    fn leaves_noise(&self, set: &CandidateModel, noise: &[f64]) -> bool {
+    pub(crate) fn leaves_noise(&self, set: &CandidateModel, noise: &[f64]) -> bool {
         let beside = self.space.candidates.iter();
         let beside = beside.filter(|(candidate, _)| !set.holds(candidate));
         let steps = beside.filter_map(|(candidate, scale)| {

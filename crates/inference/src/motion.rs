@@ -36,3 +36,9 @@ pub(crate) fn is_enough<'a>(
 pub fn is_a_cause(share: f64) -> bool {
     share > OF_MOTION
 }
+
+/// Odds that what moves the outputs by such a share of their motion, rms, is one of the small things that every lumped model misses,
+/// against a law of the catalogue: even at what an effect has to move for a name.
+pub(crate) fn odds_of_small_cause(share: f64) -> f64 {
+    (OF_MOTION / share).powi(2)
+}

@@ -15,10 +15,11 @@ use simgap_effects::{Effect, Placed, free_laws, sites};
 use simgap_estimate::{Candidate, EstimateError, Fit, linearise_at, score};
 use simgap_model::Location;
 
-use crate::candidate_model::{CandidateModel, add, keep};
+use crate::candidate_model::{CandidateModel, add, is_bent_from, keep};
 use crate::coincidence::{Coincidence, coincidence};
 use crate::gap::{Gap, RELEVANT_SHARE, over_noise};
 use crate::motion;
+use crate::relevance::closed;
 use crate::search::Search;
 
 /// The status is `unknown` where another cause is likelier than this, by the training records or by the check records.
@@ -76,7 +77,7 @@ pub fn other(
     };
     let relevant = RELEVANT_SHARE.powi(2);
     let own = left.powi(2) + relevant;
-    let mut log_odds = of_any_cause(left);
+    let mut log_odds = of_any_cause(left, 0.0);
     if let Some(law) = &law {
         let of_law = law.left.powi(2) + relevant;
         log_odds += 0.5 * FOUND_LAW * (own / of_law).ln().max(0.0);
@@ -98,20 +99,21 @@ fn probability_of(log_odds: f64) -> f64 {
     1.0 / (1.0 + (-log_odds).exp())
 }
 
-/// The first two terms of (1).
-fn of_any_cause(left: f64) -> f64 {
+/// The first two terms of (1), with odds of causes too small for a law beside p₀.
+fn of_any_cause(left: f64, small: f64) -> f64 {
     let relevant = RELEVANT_SHARE.powi(2);
-    (PRIOR / (1.0 - PRIOR)).ln() + 0.5 * ANY_CAUSE * (left.powi(2) / relevant).ln_1p()
+    (PRIOR / (1.0 - PRIOR) + small).ln() + 0.5 * ANY_CAUSE * (left.powi(2) / relevant).ln_1p()
 }
 
 /// The probability of a cause of any kind outside the catalogue by (1), where a share of what should be explained is left.
 #[must_use]
 pub fn other_by(left: f64) -> f64 {
-    probability_of(of_any_cause(left.min(1.0)))
+    probability_of(of_any_cause(left.min(1.0), 0.0))
 }
 
 /// The probability that what an effect explains beside others has a cause of any kind outside the catalogue, by (1) with what the others
-/// leave as the gap: an effect that leaves much of that follows it, and may not be it.
+/// leave as the gap: an effect that leaves much of that follows it, and may not be it. What moves the outputs by d of their motion may also be one of
+/// the small things that every lumped model misses: p₀/(1−p₀) is then larger by (r_m/d)² ([`motion::odds_of_small_cause`]).
 pub(crate) fn other_of_one(
     search: &Search<'_>,
     (with, noise): (&CandidateModel, &[f64]),
@@ -122,7 +124,14 @@ pub(crate) fn other_of_one(
         noise: noise.to_vec(),
         std: search.problem.output_std(),
     };
-    other_by(gap.left(&with.fit.variance))
+    let closed = closed(with, without).zip(&gap.std);
+    let moved: f64 = closed.map(|(square, std)| square / (std * std)).sum();
+    // Nominal parameters that are bent to stand for the effect do what it does.
+    let small = match is_bent_from(without, with) {
+        true => 0.0,
+        false => motion::odds_of_small_cause(moved.sqrt()),
+    };
+    probability_of(of_any_cause(gap.left(&with.fit.variance).min(1.0), small))
 }
 
 /// Whether values that agree are those of what closes the gap: the set without these effects leaves a share of it that counts.

@@ -12,7 +12,7 @@ use crate::stage::Stage;
 
 impl Search<'_> {
     /// All sets that are fitted from a start without effects, likeliest first: with the colour of what the set leaves that leaves least, and
-    /// with the best of them changed. Where there is a part of the records, it is searched in first, unless nothing but noise is left of all of
+    /// with the best of them changed; where the best leaves more than noise once more, with noise told from what it misses. Where there is a part of the records, it is searched in first, unless nothing but noise is left of all of
     /// them.
     ///
     /// # Errors
@@ -34,6 +34,13 @@ impl Search<'_> {
         self.tell(Stage::Colour);
         let mut pool = self.recolour(&pool);
         self.refine(&mut pool)?;
+        let misses_something = pool
+            .first()
+            .is_some_and(|best| !self.leaves_noise(best, &self.noise_of(best)));
+        if misses_something {
+            pool = self.weigh(&pool);
+            self.refine(&mut pool)?;
+        }
         Ok(pool)
     }
 

@@ -1,6 +1,6 @@
-//! Sets fitted again once the colour of what is left is known.
+//! Sets fitted again once the colour of what is left, and the noise in it, are known.
 //!
-//! Samples count by the colour of what the set leaves that leaves least ([`crate::noise_model`]). Under another colour a set that is as it
+//! Samples count by the colour of what the set leaves that leaves least, and what is left beyond its noise as a discrepancy ([`crate::noise_model`]). Under another colour a set that is as it
 //! was has another misfit, which follows from its discrepancies without a fit. Of sets of several effects those are fitted again that
 //! are within reach of the likeliest then. All start from the sensitivities of the set that holds no effect; a few steps tell which are
 //! worth the whole way.
@@ -36,6 +36,22 @@ impl Search<'_> {
         if is_new {
             self.take_colour_of(least);
         }
+        self.counted_anew(pool, is_new)
+    }
+
+    /// The same where noise of the sensors counts in full and what a lumped model misses beyond it does not; the colour stays.
+    pub fn weigh(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
+        let Some(least) = least(pool) else {
+            return vec![];
+        };
+        self.noise = self.noise.with_noise(&self.noise_of(least));
+        self.options = self.noise.search_options();
+        self.visited = Visited::default();
+        self.counted_anew(pool, true)
+    }
+
+    /// Sets of a ranked pool by how samples count now; all are fitted again if that `is_new`.
+    fn counted_anew(&self, pool: &[CandidateModel], is_new: bool) -> Vec<CandidateModel> {
         let expected = |set: &CandidateModel| {
             let misfit = misfit(self.problem, &set.fit.variance, &self.options);
             set.log_posterior() + set.fit.misfit - misfit

@@ -113,7 +113,7 @@ impl Search<'_> {
 }
 
 /// Squared discrepancy of each channel that a set explains and another does not.
-fn closed<'a>(
+pub(crate) fn closed<'a>(
     with: &'a CandidateModel,
     without: &'a CandidateModel,
 ) -> impl Iterator<Item = f64> + 'a {

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! V_c(S) + ε_c²,   ε_c² = (accuracy of the simulation)² + (noise of the inputs through the plant)²      (1)
-//! ln L = −½ Σ_c n_c ln(V_c + ε_c²),   n_c = share_c · N                     (2)
+//! ln L = −½ Σ_c n_c ∫ q_c(x) dx/x,   x up to V_c + ε_c²,   n_c = share_c · N          (2)
+//! q_c(x) = ζ + (1 − ζ) min(1, (σ_c² + ε_c²)/x),   ζ = α/(α + Σ n_c)                    (3)
 //! ```
 //!
 //! V_c is the squared discrepancy of a channel, n_c the number of its samples that are independent. ε_c comes from the
@@ -13,6 +14,10 @@
 //! set leaves, by that for a variance, once; before larger sets where a single effect leaves nothing but noise. With it the model discrepancy has an amplitude that every set infers, V_c itself, and a colour
 //! that none of them chooses. Coloured noise of a sensor has its share of independent samples alike. Where noise of the
 //! inputs is integrated by the plant, residuals are whitened before they are squared ([`whitening`]).
+//!
+//! Where the search ends with a set that leaves more than noise, the noise σ_c of the sensors in what the least set leaves is told from the
+//! discrepancy ([`noise_variance`]). Noise counts by its samples; what a lumped model misses of a machine beyond it is no sample of anything, and
+//! counts as α observations at the most. Until then ζ = 1: the search climbs, and judges nothing.
 //!
 //! Reference: \[Miller2019\], the coarsened likelihood.
 
@@ -30,12 +35,14 @@ pub use sensor::{
 };
 pub use whitening::whitening;
 
-use simgap_estimate::{EstimateError, Fit, FitOptions, Problem};
+use simgap_estimate::{Discrepancy, EstimateError, Fit, FitOptions, Problem};
 use simgap_signal::SignalError;
 use simgap_signal::correlation::{effective_sample_count, independent_sample_count};
 
 /// How well noise is known: its mean square to a tenth. What is left within it is noise.
 pub const NOISE_KNOWN: f64 = 1.1;
+/// α of (3).
+const DISCREPANCY: f64 = 50.0;
 /// A fit of the search stops when a step gains less than this: sets are told apart by more.
 const SEARCH_CONVERGED: f64 = 0.1;
 
@@ -48,6 +55,8 @@ pub struct NoiseModel {
     pub floor: Vec<f64>,
     /// Standard deviation of each channel.
     std: Vec<f64>,
+    /// σ_c and α of (3), once they are known.
+    discrepancy: Option<Discrepancy>,
 }
 
 impl NoiseModel {
@@ -83,6 +92,7 @@ impl NoiseModel {
             }),
             floor: floor.collect(),
             std,
+            discrepancy: None,
         })
     }
 
@@ -107,6 +117,19 @@ impl NoiseModel {
         }
     }
 
+    /// The same where so much is noise, mean square of each channel, and what is left beyond it the discrepancy of (3).
+    #[must_use]
+    pub fn with_noise(&self, noise: &[f64]) -> NoiseModel {
+        let channels = noise.iter().zip(&self.std);
+        NoiseModel {
+            discrepancy: Some(Discrepancy {
+                observations: DISCREPANCY,
+                noise: channels.map(|(noise, std)| noise.sqrt() / std).collect(),
+            }),
+            ..self.clone()
+        }
+    }
+
     /// Options of the fits of a search.
     #[must_use]
     pub fn search_options(&self) -> FitOptions {
@@ -123,6 +146,7 @@ impl NoiseModel {
         FitOptions {
             effective_share: self.effective_share.clone(),
             floor: self.floor.clone(),
+            discrepancy: self.discrepancy.clone(),
             ..FitOptions::white(self.floor.len())
         }
     }

@@ -5,13 +5,15 @@
 //! ends:  A = H N/N_c + S⁻¹                                                (2)
 //! tails: + ln Γ((n − k)/2) − ln Γ(n/2) + ½ k ln(n/2),   k = tr(H A⁻¹)     (3)
 //! edge:  + ln Φ(−|δ|) + ½ δ²,   δ = (û − m)/s                             (4)
+//! noise: + (1 − ζ) k (k + 2)/(4 n)                                        (5)
 //! ```
 //!
 //! (1) is that of the core. (2): ln L counts the N samples of the records, V_c the N_c samples that are not near an end, so
 //! that H of the fit is too small by N_c/N. (3): the likelihood with an unknown variance is (1 + xᵀHx/n)^(−n/2), which has
 //! heavier tails than a normal one where the effective number of samples n is small; k of the directions are seen. (4): a
 //! value that the data do not see on one side (a level beyond the signal) is held at the edge by its prior N(m, s²): the
-//! mass of the prior beyond the edge counts, not its density there.
+//! mass of the prior beyond the edge counts, not its density there. (5): beyond the noise s the likelihood falls by n (1 − s/V)/2, where (3) has
+//! n ln(V/s)/2; to second order its tails are twice as heavy.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +28,7 @@ pub(crate) fn of_the_core(integrand: &Integrand<'_>) -> f64 {
     normal(integrand, 1.0).0
 }
 
-/// (1) with (2) to (4), of a plant with one output.
+/// (1) with (2) to (5), of a plant with one output.
 pub(crate) fn corrected(integrand: &Integrand<'_>) -> f64 {
     let (all, counted) = integrand.sample_counts();
     let (log_z, seen) = normal(integrand, all / counted);
@@ -36,7 +38,8 @@ pub(crate) fn corrected(integrand: &Integrand<'_>) -> f64 {
         let below = normal_cdf(-apart.abs());
         below.ln() + 0.5 * apart * apart
     });
-    log_z + tails + edges.sum::<f64>()
+    let of_noise = integrand.coarsened() * seen * (seen + 2.0) / (4.0 * n);
+    log_z + tails + of_noise + edges.sum::<f64>()
 }
 
 /// (1) with a factor on H, and k of (3).

@@ -1,9 +1,11 @@
 //! The integrand of ln Z as the theory page states it, evaluated by simulation.
 //!
 //! ```text
-//! ln L = −½ Σ_c n_c ln(V_c + ε_c²),   n_c = share_c · N                   (1)
+//! ln L = −½ Σ_c n_c ∫ q_c(x) dx/x,   x up to V_c + ε_c²,   n_c = share_c · N         (1)
+//! q_c(x) = ζ + (1 − ζ) min(1, s_c/x)                                      (2)
 //! ```
 //!
+//! s_c is the variance of noise, the accuracy of the simulation with it; ζ is 1 where all that is left counts alike.
 //! V_c is the mean square of measured minus predicted over the samples that count. The priors are those of the catalogue, of
 //! the stated uncertainties, and for an initial state a normal one about zero that is as wide as the motion goes. Each
 //! value is a rising function of a coordinate that is even over 0 to 1.
@@ -36,6 +38,9 @@ pub(crate) struct Integrand<'a> {
     /// n_c and ε_c² of (1).
     weight: Vec<f64>,
     floor: Vec<f64>,
+    /// s_c and ζ of (2).
+    noise: Vec<f64>,
+    exponent: f64,
 }
 
 impl<'a> Integrand<'a> {
@@ -60,18 +65,33 @@ impl<'a> Integrand<'a> {
             })
             .collect();
         let count: f64 = problem.runs.iter().map(|run| run.len as f64).sum();
-        let floor = problem.output_std().into_iter().zip(&options.floor);
+        let std = problem.output_std();
+        let weight: Vec<f64> = options
+            .effective_share
+            .iter()
+            .map(|share| share * count)
+            .collect();
+        let (exponent, noise) = match &options.discrepancy {
+            Some(discrepancy) => {
+                let observations = discrepancy.observations;
+                let exponent = observations / (observations + weight.iter().sum::<f64>());
+                (exponent, discrepancy.noise.clone())
+            }
+            None => (1.0, vec![1.0; std.len()]),
+        };
+        let of_std = |shares: &[f64]| -> Vec<f64> {
+            let channels = std.iter().zip(shares);
+            channels.map(|(std, share)| (std * share).powi(2)).collect()
+        };
         Integrand {
             problem,
             set,
             coordinates,
             scale_at,
-            weight: options
-                .effective_share
-                .iter()
-                .map(|share| share * count)
-                .collect(),
-            floor: floor.map(|(std, share)| (std * share).powi(2)).collect(),
+            weight,
+            floor: of_std(&options.floor),
+            noise: of_std(&noise),
+            exponent,
         }
     }
 
@@ -239,7 +259,7 @@ impl<'a> Integrand<'a> {
                 squares += pairs.map(|(m, p)| (m - p).powi(2)).sum::<f64>();
             }
             let variance = squares / count as f64;
-            let value = -0.5 * self.weight[c] * (variance + self.floor[c]).ln();
+            let value = -0.5 * self.weight[c] * self.size(variance + self.floor[c], self.noise[c]);
             if value.is_nan() {
                 f64::NEG_INFINITY
             } else {
@@ -247,6 +267,20 @@ impl<'a> Integrand<'a> {
             }
         };
         (0..self.weight.len()).map(of_channel).sum()
+    }
+
+    /// The integral of (1) over ln x, by parts: noise up to s, and beyond it a discrepancy with what noise there is in it.
+    fn size(&self, left: f64, noise: f64) -> f64 {
+        if left <= noise {
+            return left.ln();
+        }
+        let beyond = left / noise;
+        noise.ln() + self.exponent * beyond.ln() + (1.0 - self.exponent) * (1.0 - 1.0 / beyond)
+    }
+
+    /// 1 − ζ of (2).
+    pub(crate) fn coarsened(&self) -> f64 {
+        1.0 - self.exponent
     }
 
     /// The values at a point of the unit cube; none where the prior has no density.

@@ -53,6 +53,18 @@ struct Solved {
 impl Solved {
     /// As a diagnosis does it: a noise model with the colour of what the set leaves, and a fit of the search.
     fn new(case: &Case) -> Solved {
+        Solved::of(case, FitOptions::clone)
+    }
+
+    /// The same where all that is left counts as noise.
+    fn of_noise(case: &Case) -> Solved {
+        Solved::of(case, |options| FitOptions {
+            discrepancy: None,
+            ..options.clone()
+        })
+    }
+
+    fn of(case: &Case, counted: impl Fn(&FitOptions) -> FitOptions) -> Solved {
         let mut problem = Problem::new(&case.model, case.runs.clone()).unwrap();
         problem.leaves_out_ends = true;
         let white = FitOptions::white(case.model.outputs.len());
@@ -84,8 +96,10 @@ impl Solved {
             budget,
         );
         let first = search.fit(&start).unwrap();
-        let noise = noise.with_colour_of(&first.fit);
-        search.options = noise.search_options();
+        let noise = noise
+            .with_colour_of(&first.fit)
+            .with_noise(&search.noise_of(&first));
+        search.options = counted(&noise.search_options());
         let set = search.fit(&first.fit.estimate).unwrap();
         let options = search.options.clone();
         Solved {
@@ -232,7 +246,7 @@ fn val_nested_sampling_beyond_a_quadratic() {
     );
     let mut apart = vec![];
     for case in beyond_a_quadratic() {
-        let solved = Solved::new(&case);
+        let solved = Solved::of_noise(&case);
         let line = solved.with(Draws::AboutEstimate, |integrand| {
             assert_is_that_of_the_core(&solved, integrand, case.name);
             let found = sampled(integrand, LIVE);
