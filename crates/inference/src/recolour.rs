@@ -40,7 +40,7 @@ impl Search<'_> {
     }
 
     /// The same where noise of the sensors counts in full and what a lumped model misses beyond it does not; the colour stays.
-    pub fn weigh(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
+    pub(crate) fn weigh(&mut self, pool: &[CandidateModel]) -> Vec<CandidateModel> {
         let Some(least) = least(pool) else {
             return vec![];
         };
