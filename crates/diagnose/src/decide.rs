@@ -19,6 +19,8 @@ pub(crate) struct Decision {
     pub(crate) effects: Vec<EffectPosterior>,
     /// The law that the catalogue may lack.
     pub(crate) other: Other,
+    /// Noise in what the best set leaves, mean square of each channel.
+    pub(crate) noise: Vec<f64>,
     /// What the model as given leaves above the noise, share of the motion, mean square, summed over the channels.
     to_explain: f64,
     /// Where the final fit starts.
@@ -72,13 +74,15 @@ pub(crate) fn decide(
     };
     let posterior = model_posterior(search, pool)?;
     let best = posterior.best().unwrap_or(&base).clone();
-    let gap = Gap::of(given, &best.fit.variance, &search.noise_of(&best), &std);
+    let noise = search.noise_of(&best);
+    let gap = Gap::of(given, &best.fit.variance, &noise, &std);
     let other = other(search, &base, &best, &gap)?;
     let mut decision = Decision {
         status: Status::None,
         effects: posterior.effects.clone(),
         posterior,
         start: best.fit.estimate.clone(),
+        noise,
         to_explain: gap.to_explain(),
         other,
     };

@@ -149,9 +149,7 @@ pub fn diagnose<R: Borrow<Record>>(
     progress(Stage::FinalFit.name());
     // Intervals count the samples that what the answer leaves holds.
     let noise = match decision.posterior.best() {
-        Some(best) => noise
-            .with_colour_of(&best.fit)
-            .with_noise(&search.noise_of(best)),
+        Some(best) => noise.with_colour_of(&best.fit).with_noise(&decision.noise),
         None => noise,
     };
     let final_options = noise.final_options();

@@ -54,9 +54,9 @@ impl<'a> Merit<'a> {
             .enumerate()
             .map(channel)
             .collect();
-        let independent: f64 = channels.iter().map(|channel| channel.independent).sum();
-        let exponent =
-            discrepancy.map_or(1.0, |of| of.observations / (of.observations + independent));
+        let exponent = discrepancy.map_or(1.0, |of| {
+            of.observations / (of.observations + independent(&channels))
+        });
         Merit {
             problem,
             channels,
@@ -95,22 +95,17 @@ impl<'a> Merit<'a> {
             .sum()
     }
 
-    /// The same as a share of all independent samples.
-    pub(crate) fn share(&self, variance: &[f64]) -> f64 {
-        let all: f64 = self
-            .channels
-            .iter()
-            .map(|channel| channel.independent)
-            .sum();
-        self.observations(variance) / all.max(f64::MIN_POSITIVE)
-    }
-
     /// Independent observations that what is left counts as.
     pub(crate) fn observations(&self, variance: &[f64]) -> f64 {
         let channels = self.channels.iter().zip(variance);
         channels
             .map(|(channel, v)| channel.independent * channel.share(*v, self.exponent))
             .sum()
+    }
+
+    /// The same as a share of all independent samples.
+    pub(crate) fn share(&self, variance: &[f64]) -> f64 {
+        self.observations(variance) / independent(&self.channels).max(f64::MIN_POSITIVE)
     }
 
     /// The second sum of (1).
@@ -129,6 +124,11 @@ impl<'a> Merit<'a> {
             })
             .collect()
     }
+}
+
+/// Independent samples of all channels.
+fn independent(channels: &[Channel]) -> f64 {
+    channels.iter().map(|channel| channel.independent).sum()
 }
 
 impl Channel {

@@ -42,7 +42,7 @@ impl Search<'_> {
             let Some(best) = pool.first().cloned() else {
                 return Ok(false);
             };
-            if !self.leaves_noise(&best, &self.noise_of(&best)) {
+            if !self.leaves_only_noise(&best) {
                 let leaves_little = self.leaves_no_share(&best, pool, tried);
                 return Ok(leaves_little && !self.is_promising(&best)?);
             }
@@ -102,12 +102,17 @@ impl Search<'_> {
         let again = fit(self.problem, &least.fit.estimate, &options);
         again.is_ok_and(|again| {
             let again = self.candidate_model(again);
-            self.leaves_noise(&again, &self.noise_of(&again))
+            self.leaves_only_noise(&again)
         })
     }
 
+    /// Whether a set leaves nothing but noise, where that was not told before.
+    pub(crate) fn leaves_only_noise(&self, set: &CandidateModel) -> bool {
+        self.leaves_noise(set, &self.noise_of(set))
+    }
+
     /// Whether a set leaves nothing but noise ([`Search::noise_of`] it). What a converter rounds off looks like noise, and is explained by its steps.
-    pub(crate) fn leaves_noise(&self, set: &CandidateModel, noise: &[f64]) -> bool {
+    fn leaves_noise(&self, set: &CandidateModel, noise: &[f64]) -> bool {
         let beside = self.space.candidates.iter();
         let beside = beside.filter(|(candidate, _)| !set.holds(candidate));
         let steps = beside.filter_map(|(candidate, scale)| {

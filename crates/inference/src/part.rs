@@ -12,8 +12,8 @@ use crate::stage::Stage;
 
 impl Search<'_> {
     /// All sets that are fitted from a start without effects, likeliest first: with the colour of what the set leaves that leaves least, and
-    /// with the best of them changed; where the best leaves more than noise once more, with noise told from what it misses. Where there is a part of the records, it is searched in first, unless nothing but noise is left of all of
-    /// them.
+    /// with the best of them changed; once more, with noise told from what a model misses, where the best leaves more than noise. Where there is
+    /// a part of the records, it is searched in first, unless nothing but noise is left of all of them.
     ///
     /// # Errors
     /// [`EstimateError`] when the model cannot be propagated.
@@ -34,10 +34,10 @@ impl Search<'_> {
         self.tell(Stage::Colour);
         let mut pool = self.recolour(&pool);
         self.refine(&mut pool)?;
-        let misses_something = pool
+        if pool
             .first()
-            .is_some_and(|best| !self.leaves_noise(best, &self.noise_of(best)));
-        if misses_something {
+            .is_some_and(|best| !self.leaves_only_noise(best))
+        {
             pool = self.weigh(&pool);
             self.refine(&mut pool)?;
         }

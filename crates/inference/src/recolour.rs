@@ -1,7 +1,7 @@
 //! Sets fitted again once the colour of what is left, and the noise in it, are known.
 //!
-//! Samples count by the colour of what the set leaves that leaves least, and what is left beyond its noise as a discrepancy ([`crate::noise_model`]). Under another colour a set that is as it
-//! was has another misfit, which follows from its discrepancies without a fit. Of sets of several effects those are fitted again that
+//! Samples count by the colour of what the set leaves that leaves least, and then what is left beyond its noise as a discrepancy
+//! ([`crate::noise_model`]). Where samples count otherwise, a set that is as it was has another misfit, which follows from its discrepancies without a fit. Of sets of several effects those are fitted again that
 //! are within reach of the likeliest then. All start from the sensitivities of the set that holds no effect; a few steps tell which are
 //! worth the whole way.
 
