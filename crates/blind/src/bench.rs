@@ -15,7 +15,10 @@ pub const OVERSAMPLING: usize = 9;
 /// Maps with a memory of the signal: they see it finely sampled and from before the record starts.
 /// Every other map acts on the samples that are recorded.
 const WITH_MEMORY: &[&str] = &["sensor_delay", "sensor_lag", "alternating_timing"];
-/// The map whose clock starts with the record and soon sees what comes after it.
+/// Maps of a clock that starts with the record: they see it finely sampled too, since what they read between or beside samples
+/// is the signal, without the noise of its samples.
+const WITH_CLOCK: &[&str] = &[RUNS_AHEAD, "synchronous_tone"];
+/// The one that soon sees what comes after the record.
 const RUNS_AHEAD: &str = "clock_skew";
 /// Motion after the end of the record, share of its length: no clock runs ahead further.
 const TAIL: f64 = 0.05;
@@ -148,7 +151,7 @@ impl Bench {
     ) -> Vec<f64> {
         let here = |placed: &&Placed| placed.at == Location::Channel(channel.to_string());
         let has_memory = |placed: &&&Placed| WITH_MEMORY.contains(&placed.effect.kind());
-        let runs_ahead = |placed: &&&Placed| placed.effect.kind() == RUNS_AHEAD;
+        let has_clock = |placed: &&&Placed| WITH_CLOCK.contains(&placed.effect.kind());
         let apply = |values: &[f64], placed: &Placed, time_step_s: f64| {
             let mut random = Random::of_case(self.len as u64, self.index, 0);
             let struck = placed
@@ -174,7 +177,7 @@ impl Bench {
             fine = apply(&fine, placed, step);
         }
         let mut fine = fine.split_off(self.lead * OVERSAMPLING);
-        for placed in chain.iter().filter(|p| runs_ahead(p)) {
+        for placed in chain.iter().filter(|p| has_clock(p)) {
             fine = apply(&fine, placed, step);
         }
         let sampled = fine.iter().step_by(OVERSAMPLING).take(self.len);
@@ -182,7 +185,7 @@ impl Bench {
         if let Some(noise) = noise {
             sampled.iter_mut().zip(noise).for_each(|(y, e)| *y += e);
         }
-        for placed in chain.iter().filter(|p| !has_memory(p) && !runs_ahead(p)) {
+        for placed in chain.iter().filter(|p| !has_memory(p) && !has_clock(p)) {
             sampled = apply(&sampled, placed, self.time_step_s);
         }
         sampled

@@ -357,12 +357,13 @@ mod tests {
     /// The standard deviation of a thousand samples or more scatters by 1/√2000; five sigma.
     const SCATTER: f64 = 0.11;
 
-    /// A kind of each sort: force, dry force, wrong parameter, sensor with memory, sensor without.
-    const KINDS: [&str; 5] = [
+    /// A kind of each sort: force, dry force, wrong parameter, sensor with memory, with a clock, without either.
+    const KINDS: [&str; 6] = [
         "cubic_stiffness",
         "coulomb_friction",
         "mass_error",
         "sensor_delay",
+        "synchronous_tone",
         "sensor_bias",
     ];
 
