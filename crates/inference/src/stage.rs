@@ -1,6 +1,7 @@
 //! The stages of a diagnosis, as they are told while it runs.
 
-/// What is being done. In the order in which a diagnosis goes through them; it leaves out those of the search that it need not go through.
+/// What is being done. In the order in which a diagnosis goes through them, but for single effects from many values, which may come after those beside
+/// parameters; it leaves out those of the search that it need not go through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
     /// The model as given, and the noise of its records.
