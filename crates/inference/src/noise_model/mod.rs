@@ -30,9 +30,7 @@ mod whitening;
 pub use accuracy::{accuracy, accuracy_of_steps};
 pub use input_noise::{InputNoise, input_noise};
 pub(crate) use range_ends::log_likelihood_at_range_ends;
-pub use sensor::{
-    is_sensor_noise, noise_variance, rounding_variance, stepped, stored_rounding_variance,
-};
+pub use sensor::{noise_variance, rounding_variance, stepped, stored_rounding_variance};
 pub use whitening::whitening;
 
 use simgap_estimate::{Discrepancy, EstimateError, Fit, FitOptions, Problem};

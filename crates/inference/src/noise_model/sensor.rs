@@ -1,13 +1,14 @@
 //! Noise of the sensors in what a set leaves.
 //!
 //! ```text
-//! r_n = a r_{n−1} + w_n − b w_{n−1},   0 ≤ b ≤ a < 1,   w white              (1)
+//! r_n = a r_{n−1} + w_n − b w_{n−1},   0 ≤ a, b < 1,   w white                (1)
 //! c_{k+1} = a c_k for k ≥ 1,   b / (1 + b²) = (a c_0 − c_1) / ((1 + a²) c_0 − 2 a c_1)     (2)
 //! ```
 //!
 //! Where a discrepancy is (1), all of it is noise: of a sensor and its filter or amplifier (b = 0), with white noise of the converter
-//! behind it, which b stands for. (2) is what the autocovariances c_k of (1) say of a and b. Where a discrepancy is not (1), the white part
-//! of it is noise, which differences of neighbouring samples tell.
+//! behind it (b < a), or of displacements whose differences are taken for a velocity (b > a). (2) is what the autocovariances c_k of (1) say
+//! of a and b. Central differences have no correlation of neighbours, and every other sample of them is a difference of neighbours: each half
+//! is looked at by itself. Where a discrepancy is not (1), the white part of it is noise, which differences of neighbouring samples tell.
 //!
 //! Reference: \[Ljung1999\], chapter 4.
 
@@ -25,7 +26,8 @@ const WHITE: f64 = 0.8;
 const EVEN: f64 = 0.7;
 /// Lags of (2).
 const LAGS: usize = 10;
-/// Largest a of (1): a discrepancy that is correlated over more than ten samples is a motion.
+/// Largest a of (1): a discrepancy that is correlated over more than ten samples is a motion. Largest b likewise, so that w forgets where
+/// it began.
 const MOST_COLOUR: f64 = 0.92;
 
 /// The step in which effects store each channel.
@@ -68,8 +70,7 @@ fn variance_of_step(step: Option<f64>) -> f64 {
 }
 
 /// Whether a discrepancy is noise of a sensor and nothing else, (1).
-#[must_use]
-pub fn is_sensor_noise(discrepancy: &[f64]) -> bool {
+fn is_sensor_noise(discrepancy: &[f64]) -> bool {
     let Ok(correlation) = autocorrelation(discrepancy, LAGS.min(discrepancy.len() / 2)) else {
         return false;
     };
@@ -91,7 +92,7 @@ fn filtered_and_white(correlation: &[f64]) -> [f64; 2] {
     // The root within 0 to 1; at half there is no other.
     let share = share.clamp(0.0, 0.5);
     let white = 2.0 * share / (1.0 + (1.0 - 4.0 * share * share).sqrt());
-    [colour, white.min(colour)]
+    [colour, white.min(MOST_COLOUR)]
 }
 
 /// w of (1) for a and b.
@@ -120,6 +121,20 @@ fn is_white(values: &[f64]) -> bool {
     independent > WHITE * count && is_new && mean > EVEN * square.sqrt()
 }
 
+/// Every other sample of a discrepancy, from each of the first two on, where it looks like central differences: a sample is told ahead
+/// by the last but one, against which it goes, and not by those an odd number of samples before it.
+fn halves(discrepancy: &[f64]) -> Option<[Vec<f64>; 2]> {
+    let count = discrepancy.len() as f64;
+    let rho = autocorrelation(discrepancy, LAGS.min(discrepancy.len() / 2)).ok()?;
+    let odd = rho.iter().skip(1).step_by(2);
+    // By chance as many parts of the count as there are lags.
+    let by_odd: f64 = odd.map(|rho| rho * rho - 1.0 / count).sum();
+    let last_but_one = rho.get(2).copied().unwrap_or(0.0).min(0.0);
+    let is_told = |share: f64| share > NOISE_KNOWN - 1.0;
+    let half = |first: usize| discrepancy.iter().skip(first).step_by(2).copied().collect();
+    (is_told(last_but_one.powi(2)) && !is_told(by_odd)).then(|| [half(0), half(1)])
+}
+
 /// Variance of the sensor's noise in each channel of discrepancies, over all runs.
 ///
 /// Where values are stored in steps, noise moves some of them by a step and most not at all: there
@@ -136,20 +151,30 @@ pub fn noise_variance(discrepancy: &[Vec<Vec<f64>>], stepped: &[bool]) -> Vec<f6
                     true => run[c].clone(),
                     false => holding_noise(&run[c]),
                 };
-                let sum: f64 = noisy.iter().map(|r| r * r).sum();
-                if is_sensor_noise(&noisy) {
-                    square += sum;
-                    continue;
-                }
-                let sigma = match white_noise_std(&noisy) {
-                    Ok(noise) if !stepped[c] => noise.std,
-                    _ => short_noise(&noisy),
+                square += match halves(&noisy) {
+                    Some(halves) => halves
+                        .iter()
+                        .map(|half| noise_square(half, stepped[c]))
+                        .sum(),
+                    None => noise_square(&noisy, stepped[c]),
                 };
-                square += (sigma * sigma * noisy.len() as f64).min(sum);
             }
             square / f64::max(count, 1.0)
         })
         .collect()
+}
+
+/// Squares of the noise in a discrepancy, added up.
+fn noise_square(discrepancy: &[f64], is_stepped: bool) -> f64 {
+    let all: f64 = discrepancy.iter().map(|r| r * r).sum();
+    if is_sensor_noise(discrepancy) {
+        return all;
+    }
+    let sigma = match white_noise_std(discrepancy) {
+        Ok(noise) if !is_stepped => noise.std,
+        _ => short_noise(discrepancy),
+    };
+    (sigma * sigma * discrepancy.len() as f64).min(all)
 }
 
 /// The discrepancies that hold noise: those of clipped, lost or struck samples are zero, or repeat themselves.
@@ -241,6 +266,39 @@ pub(super) mod tests {
             let [found, _] = filtered_and_white(&correlation);
             assert!((found - colour).abs() < 0.1, "{found} for {colour}");
             assert!(is_sensor_noise(&both), "{colour}");
+        }
+    }
+
+    /// Share of a discrepancy that is noise, mean square.
+    fn noise_share(left: Vec<f64>) -> f64 {
+        let own = left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64;
+        noise_variance(&[vec![left]], &[false])[0] / own
+    }
+
+    #[test]
+    fn verify_noise_of_differences_counts_in_full() {
+        let (displacement, converter) = (white(6000), white(6100));
+        let apart = |x: &[f64], lag: usize| -> Vec<f64> {
+            (lag..x.len()).map(|n| x[n] - x[n - lag]).collect()
+        };
+        for lag in [1, 2] {
+            let velocity = apart(&displacement, lag);
+            let acceleration = apart(&velocity, lag);
+            for (name, left) in [("velocity", velocity), ("acceleration", acceleration)] {
+                for white in [0.0, 0.4] {
+                    let beside = left.iter().zip(converter.iter().rev());
+                    let left = beside.map(|(left, noise)| left + white * noise).collect();
+                    let share = noise_share(left);
+                    assert!((share - 1.0).abs() < 1e-12, "{name} {lag} {white}: {share}");
+                }
+            }
+        }
+        // A motion as large beside it is none, however high its frequency. Where it is slow much of the noise is taken for it.
+        for step in [0.05, 0.3, 0.8, 1.2] {
+            let velocity = apart(&displacement, 2).into_iter().enumerate();
+            let left = velocity.map(|(n, v)| v + 2.0 * (step * n as f64).sin());
+            let share = noise_share(left.collect());
+            assert!(share < 0.7, "{step}: {share}");
         }
     }
 
