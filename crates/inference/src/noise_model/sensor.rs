@@ -1,14 +1,19 @@
 //! Noise of the sensors in what a set leaves.
 //!
 //! ```text
-//! r_n = a r_{n−1} + w_n − b w_{n−1},   0 ≤ a, b < 1,   w white                (1)
+//! r_n = a r_{n−1} + w_n − b w_{n−1},   0 ≤ b ≤ a < 1,   w white              (1)
 //! c_{k+1} = a c_k for k ≥ 1,   b / (1 + b²) = (a c_0 − c_1) / ((1 + a²) c_0 − 2 a c_1)     (2)
 //! ```
 //!
 //! Where a discrepancy is (1), all of it is noise: of a sensor and its filter or amplifier (b = 0), with white noise of the converter
-//! behind it (b < a), or of displacements whose differences are taken for a velocity (b > a). (2) is what the autocovariances c_k of (1) say
-//! of a and b. Central differences have no correlation of neighbours, and every other sample of them is a difference of neighbours: each half
-//! is looked at by itself. Where a discrepancy is not (1), the white part of it is noise, which differences of neighbouring samples tell.
+//! behind it, which b stands for. (2) is what the autocovariances c_k of (1) say of a and b. So it is where it is noise of a finite memory,
+//!
+//! ```text
+//! r_n = Σ_{k=0…q} b_k w_{n−k},   c_k = 0 for k > q                           (3)
+//! ```
+//!
+//! as what is filtered or averaged over a few samples leaves, and what is a difference of displacements, of neighbours or central. Where a
+//! discrepancy is neither, the white part of it is noise, which differences of neighbouring samples tell.
 //!
 //! Reference: \[Ljung1999\], chapter 4.
 
@@ -22,12 +27,13 @@ use super::NOISE_KNOWN;
 
 /// Share of independent samples from which w of (1) is white.
 const WHITE: f64 = 0.8;
-/// Mean size of w of (1) over its rms, at least: 0.80 for normal noise, small for a few jumps among many small steps.
+/// Lags beyond q that are looked at, and q with them, as a multiple of it.
+const BEYOND: usize = 4;
+/// Mean size of w over its rms, at least: 0.80 for normal noise, small for a few jumps among many small steps.
 const EVEN: f64 = 0.7;
-/// Lags of (2).
+/// Lags of (2), and q of (3).
 const LAGS: usize = 10;
-/// Largest a of (1): a discrepancy that is correlated over more than ten samples is a motion. Largest b likewise, so that w forgets where
-/// it began.
+/// Largest a of (1): a discrepancy that is correlated over more than ten samples is a motion.
 const MOST_COLOUR: f64 = 0.92;
 
 /// The step in which effects store each channel.
@@ -69,8 +75,53 @@ fn variance_of_step(step: Option<f64>) -> f64 {
     step.unwrap_or(0.0).powi(2) / 12.0
 }
 
-/// Whether a discrepancy is noise of a sensor and nothing else, (1).
+/// Whether a discrepancy is noise of a sensor and nothing else, (1) or (3).
 fn is_sensor_noise(discrepancy: &[f64]) -> bool {
+    is_filtered_noise(discrepancy) || has_short_memory(discrepancy)
+}
+
+/// (3): what is more than q samples apart is not correlated, and the w are no few jumps.
+fn has_short_memory(discrepancy: &[f64]) -> bool {
+    let Ok(rho) = autocorrelation(discrepancy, BEYOND * LAGS) else {
+        return false;
+    };
+    let square = |rho: &[f64]| -> f64 { rho.iter().map(|rho| rho * rho).sum() };
+    let (within, beyond) = rho[1..].split_at(LAGS);
+    // By chance (Bartlett): as many parts of the count as there are lags, and more by the correlations within the memory.
+    let by_chance = (1.0 + 2.0 * square(within)) / discrepancy.len() as f64;
+    let told_ahead = square(beyond) - by_chance * beyond.len() as f64;
+    told_ahead < NOISE_KNOWN - 1.0 && is_even(&whitened(discrepancy, &rho[..=LAGS]))
+}
+
+/// w of (3), by the autoregression of the same memory (Levinson's recursion).
+fn whitened(discrepancy: &[f64], rho: &[f64]) -> Vec<f64> {
+    let mut weights: Vec<f64> = vec![];
+    let mut left = 1.0;
+    for order in 1..rho.len() {
+        let told: f64 = weights
+            .iter()
+            .rev()
+            .zip(&rho[1..])
+            .map(|(a, r)| a * r)
+            .sum();
+        let reflection = (rho[order] - told) / left;
+        let turned: Vec<f64> = weights.iter().rev().copied().collect();
+        let pairs = weights.iter_mut().zip(turned);
+        pairs.for_each(|(a, b)| *a -= reflection * b);
+        weights.push(reflection);
+        left *= 1.0 - reflection * reflection;
+    }
+    let windows = discrepancy.windows(weights.len() + 1);
+    let new = windows.map(|window| {
+        let (last, before) = window.split_last().unwrap_or((&0.0, &[]));
+        let told: f64 = before.iter().rev().zip(&weights).map(|(r, a)| r * a).sum();
+        last - told
+    });
+    new.collect()
+}
+
+/// Whether a discrepancy is (1).
+fn is_filtered_noise(discrepancy: &[f64]) -> bool {
     let Ok(correlation) = autocorrelation(discrepancy, LAGS.min(discrepancy.len() / 2)) else {
         return false;
     };
@@ -92,7 +143,7 @@ fn filtered_and_white(correlation: &[f64]) -> [f64; 2] {
     // The root within 0 to 1; at half there is no other.
     let share = share.clamp(0.0, 0.5);
     let white = 2.0 * share / (1.0 + (1.0 - 4.0 * share * share).sqrt());
-    [colour, white.min(MOST_COLOUR)]
+    [colour, white.min(colour)]
 }
 
 /// w of (1) for a and b.
@@ -111,28 +162,19 @@ fn innovations(discrepancy: &[f64], [colour, white]: [f64; 2]) -> Vec<f64> {
 fn is_white(values: &[f64]) -> bool {
     let count = values.len() as f64;
     let independent = effective_sample_count(values).unwrap_or(0.0);
-    let mean = values.iter().map(|w| w.abs()).sum::<f64>() / count;
-    let square = values.iter().map(|w| w * w).sum::<f64>() / count;
     let told_ahead = autocorrelation(values, LAGS.min(values.len() / 2)).map_or(1.0, |rho| {
         // By chance as many parts of the count as there are lags.
         rho.iter().skip(1).map(|rho| rho * rho - 1.0 / count).sum()
     });
     let is_new = told_ahead < NOISE_KNOWN - 1.0;
-    independent > WHITE * count && is_new && mean > EVEN * square.sqrt()
+    independent > WHITE * count && is_new && is_even(values)
 }
 
-/// Every other sample of a discrepancy, from each of the first two on, where it looks like central differences: a sample is told ahead
-/// by the last but one, against which it goes, and not by those an odd number of samples before it.
-fn halves(discrepancy: &[f64]) -> Option<[Vec<f64>; 2]> {
-    let count = discrepancy.len() as f64;
-    let rho = autocorrelation(discrepancy, LAGS.min(discrepancy.len() / 2)).ok()?;
-    let odd = rho.iter().skip(1).step_by(2);
-    // By chance as many parts of the count as there are lags.
-    let by_odd: f64 = odd.map(|rho| rho * rho - 1.0 / count).sum();
-    let last_but_one = rho.get(2).copied().unwrap_or(0.0).min(0.0);
-    let is_told = |share: f64| share > NOISE_KNOWN - 1.0;
-    let half = |first: usize| discrepancy.iter().skip(first).step_by(2).copied().collect();
-    (is_told(last_but_one.powi(2)) && !is_told(by_odd)).then(|| [half(0), half(1)])
+fn is_even(values: &[f64]) -> bool {
+    let count = values.len() as f64;
+    let mean = values.iter().map(|w| w.abs()).sum::<f64>() / count;
+    let square = values.iter().map(|w| w * w).sum::<f64>() / count;
+    mean > EVEN * square.sqrt()
 }
 
 /// Variance of the sensor's noise in each channel of discrepancies, over all runs.
@@ -151,30 +193,20 @@ pub fn noise_variance(discrepancy: &[Vec<Vec<f64>>], stepped: &[bool]) -> Vec<f6
                     true => run[c].clone(),
                     false => holding_noise(&run[c]),
                 };
-                square += match halves(&noisy) {
-                    Some(halves) => halves
-                        .iter()
-                        .map(|half| noise_square(half, stepped[c]))
-                        .sum(),
-                    None => noise_square(&noisy, stepped[c]),
+                let sum: f64 = noisy.iter().map(|r| r * r).sum();
+                if is_sensor_noise(&noisy) {
+                    square += sum;
+                    continue;
+                }
+                let sigma = match white_noise_std(&noisy) {
+                    Ok(noise) if !stepped[c] => noise.std,
+                    _ => short_noise(&noisy),
                 };
+                square += (sigma * sigma * noisy.len() as f64).min(sum);
             }
             square / f64::max(count, 1.0)
         })
         .collect()
-}
-
-/// Squares of the noise in a discrepancy, added up.
-fn noise_square(discrepancy: &[f64], is_stepped: bool) -> f64 {
-    let all: f64 = discrepancy.iter().map(|r| r * r).sum();
-    if is_sensor_noise(discrepancy) {
-        return all;
-    }
-    let sigma = match white_noise_std(discrepancy) {
-        Ok(noise) if !is_stepped => noise.std,
-        _ => short_noise(discrepancy),
-    };
-    (sigma * sigma * discrepancy.len() as f64).min(all)
 }
 
 /// The discrepancies that hold noise: those of clipped, lost or struck samples are zero, or repeat themselves.
@@ -275,30 +307,41 @@ pub(super) mod tests {
         noise_variance(&[vec![left]], &[false])[0] / own
     }
 
+    /// Differences of neighbours, central, of five points, of these differences once more, averages.
+    const FILTERS: [&[f64]; 7] = [
+        &[1.0, -1.0],
+        &[1.0, 0.0, -1.0],
+        &[-1.0, 8.0, 0.0, -8.0, 1.0],
+        &[1.0, -2.0, 1.0],
+        &[1.0, 0.0, -2.0, 0.0, 1.0],
+        &[1.0, 1.0, 1.0, 1.0, 1.0],
+        &[3.0, 2.0, 1.0, 0.0, -1.0, -2.0, -3.0],
+    ];
+
     #[test]
-    fn verify_noise_of_differences_counts_in_full() {
-        let (displacement, converter) = (white(6000), white(6100));
-        let apart = |x: &[f64], lag: usize| -> Vec<f64> {
-            (lag..x.len()).map(|n| x[n] - x[n - lag]).collect()
-        };
-        for lag in [1, 2] {
-            let velocity = apart(&displacement, lag);
-            let acceleration = apart(&velocity, lag);
-            for (name, left) in [("velocity", velocity), ("acceleration", acceleration)] {
-                for white in [0.0, 0.4] {
-                    let beside = left.iter().zip(converter.iter().rev());
-                    let left = beside.map(|(left, noise)| left + white * noise).collect();
-                    let share = noise_share(left);
-                    assert!((share - 1.0).abs() < 1e-12, "{name} {lag} {white}: {share}");
-                }
+    fn verify_noise_of_differences_and_averages_counts_in_full() {
+        let all = white(12_020);
+        let (noise, converter) = all.split_at(6020);
+        for filter in FILTERS {
+            let size = filter.iter().map(|b| b * b).sum::<f64>().sqrt();
+            let filtered = noise.windows(filter.len()).map(|window| {
+                let terms = window.iter().zip(filter);
+                terms.map(|(w, b)| w * b / size).sum::<f64>()
+            });
+            let filtered: Vec<f64> = filtered.collect();
+            for white in [0.0, 0.4] {
+                let beside = filtered.iter().zip(converter);
+                let left = beside.map(|(left, noise)| left + white * noise);
+                let share = noise_share(left.collect());
+                assert!((share - 1.0).abs() < 1e-12, "{filter:?} {white}: {share}");
             }
-        }
-        // A motion as large beside it is none, however high its frequency. Where it is slow much of the noise is taken for it.
-        for step in [0.05, 0.3, 0.8, 1.2] {
-            let velocity = apart(&displacement, 2).into_iter().enumerate();
-            let left = velocity.map(|(n, v)| v + 2.0 * (step * n as f64).sin());
-            let share = noise_share(left.collect());
-            assert!(share < 0.7, "{step}: {share}");
+            // A motion as large beside it is none, whatever its frequency.
+            for step in [0.05, 0.3, 0.8, 1.2] {
+                let moved = filtered.iter().enumerate();
+                let left = moved.map(|(n, v)| v + 2_f64.sqrt() * (step * n as f64).sin());
+                let share = noise_share(left.collect());
+                assert!(share < 0.9, "{filter:?} {step}: {share}");
+            }
         }
     }
 
