@@ -28,7 +28,7 @@ use super::NOISE_KNOWN;
 /// Share of independent samples from which w of (1) is white.
 const WHITE: f64 = 0.8;
 /// Lags beyond q that are looked at, and q with them, as a multiple of it.
-const BEYOND: usize = 4;
+const BEYOND: usize = 3;
 /// Mean size of w over its rms, at least: 0.80 for normal noise, small for a few jumps among many small steps.
 const EVEN: f64 = 0.7;
 /// Lags of (2), and q of (3).
@@ -80,17 +80,15 @@ fn is_sensor_noise(discrepancy: &[f64]) -> bool {
     is_filtered_noise(discrepancy) || has_short_memory(discrepancy)
 }
 
-/// (3): what is more than q samples apart is not correlated, and the w are no few jumps.
+/// (3): what is more than q samples apart is not correlated, and the w are no few jumps. What samples are correlated by chance counts
+/// against it: a short record does not tell.
 fn has_short_memory(discrepancy: &[f64]) -> bool {
     let Ok(rho) = autocorrelation(discrepancy, BEYOND * LAGS) else {
         return false;
     };
-    let square = |rho: &[f64]| -> f64 { rho.iter().map(|rho| rho * rho).sum() };
-    let (within, beyond) = rho[1..].split_at(LAGS);
-    // By chance (Bartlett): as many parts of the count as there are lags, and more by the correlations within the memory.
-    let by_chance = (1.0 + 2.0 * square(within)) / discrepancy.len() as f64;
-    let told_ahead = square(beyond) - by_chance * beyond.len() as f64;
-    told_ahead < NOISE_KNOWN - 1.0 && is_even(&whitened(discrepancy, &rho[..=LAGS]))
+    let (within, beyond) = rho.split_at(LAGS + 1);
+    let told_ahead: f64 = beyond.iter().map(|rho| rho * rho).sum();
+    told_ahead < NOISE_KNOWN - 1.0 && is_even(&whitened(discrepancy, within))
 }
 
 /// w of (3), by the autoregression of the same memory (Levinson's recursion).
