@@ -18,7 +18,7 @@
 //! Reference: \[Ljung1999\], chapter 4.
 
 use simgap_effects::{Action, Placed};
-use simgap_estimate::Problem;
+use simgap_estimate::{Problem, Whitening};
 use simgap_model::Location;
 use simgap_signal::correlation::{autocorrelation, effective_sample_count};
 use simgap_signal::noise::white_noise_std;
@@ -80,42 +80,17 @@ fn is_sensor_noise(discrepancy: &[f64]) -> bool {
     is_filtered_noise(discrepancy) || has_short_memory(discrepancy)
 }
 
-/// (3): what is more than q samples apart is not correlated, and the w are no few jumps. What samples are correlated by chance counts
-/// against it: a short record does not tell.
+/// (3): what is more than q samples apart is not correlated, and the w, by the autoregression of the same memory, are no few jumps.
+/// What samples are correlated by chance counts against it: a short record does not tell.
 fn has_short_memory(discrepancy: &[f64]) -> bool {
     let Ok(rho) = autocorrelation(discrepancy, BEYOND * LAGS) else {
         return false;
     };
-    let (within, beyond) = rho.split_at(LAGS + 1);
-    let told_ahead: f64 = beyond.iter().map(|rho| rho * rho).sum();
-    told_ahead < NOISE_KNOWN - 1.0 && is_even(&whitened(discrepancy, within))
-}
-
-/// w of (3), by the autoregression of the same memory (Levinson's recursion).
-fn whitened(discrepancy: &[f64], rho: &[f64]) -> Vec<f64> {
-    let mut weights: Vec<f64> = vec![];
-    let mut left = 1.0;
-    for order in 1..rho.len() {
-        let told: f64 = weights
-            .iter()
-            .rev()
-            .zip(&rho[1..])
-            .map(|(a, r)| a * r)
-            .sum();
-        let reflection = (rho[order] - told) / left;
-        let turned: Vec<f64> = weights.iter().rev().copied().collect();
-        let pairs = weights.iter_mut().zip(turned);
-        pairs.for_each(|(a, b)| *a -= reflection * b);
-        weights.push(reflection);
-        left *= 1.0 - reflection * reflection;
-    }
-    let windows = discrepancy.windows(weights.len() + 1);
-    let new = windows.map(|window| {
-        let (last, before) = window.split_last().unwrap_or((&0.0, &[]));
-        let told: f64 = before.iter().rev().zip(&weights).map(|(r, a)| r * a).sum();
-        last - told
-    });
-    new.collect()
+    let told_ahead: f64 = rho.iter().skip(LAGS + 1).map(|rho| rho * rho).sum();
+    let filter = Whitening::of_noise(&[vec![discrepancy]], &[0.0], LAGS);
+    let mut new = discrepancy.to_vec();
+    filter.apply(0, &mut new);
+    told_ahead < NOISE_KNOWN - 1.0 && is_even(&new)
 }
 
 /// Whether a discrepancy is (1).
