@@ -143,7 +143,12 @@ impl Problem {
             (None, None) => vec![],
         };
         let products: Vec<&[f64]> = products.iter().map(Vec::as_slice).collect();
-        lines_of(&products, run.time_step_s, ANY)
+        // Nearly every maximum: in few periods of a product a carrier does not stand out of the rest, and is the largest all the same.
+        let any = PeakOptions {
+            false_alarm_probability: 0.999,
+            ..PeakOptions::default()
+        };
+        lines_of(&products, run.time_step_s, &any)
     }
 
     /// The longest run, and what a fit leaves of each of its channels.
@@ -297,25 +302,18 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
 
 /// The strongest lines of several signals together that noise would hardly show, strongest first.
 fn lines(signals: &[&[f64]], step: f64) -> [f64; LINES] {
-    lines_of(signals, step, PeakOptions::default())
+    lines_of(signals, step, &PeakOptions::default())
 }
-
-/// Every maximum of a spectrum: in few periods of a product a carrier does not stand out of the rest, and is the largest all the same.
-const ANY: PeakOptions = PeakOptions {
-    false_alarm_probability: 0.999,
-    noise_reach_bins: 64,
-    min_amplitude: 0.0,
-};
 
 /// The strongest lines of several signals together, strongest first, each signal counted by the
 /// share of its own power.
-fn lines_of(signals: &[&[f64]], step: f64, options: PeakOptions) -> [f64; LINES] {
+fn lines_of(signals: &[&[f64]], step: f64, options: &PeakOptions) -> [f64; LINES] {
     let mut found: Vec<(f64, f64)> = Vec::new();
     for signal in signals {
         let Ok(spectrum) = spectrum(signal, 1.0 / step, Window::Hann, Trend::Linear) else {
             continue;
         };
-        let Ok(peaks) = find_peaks(&spectrum, &options) else {
+        let Ok(peaks) = find_peaks(&spectrum, options) else {
             continue;
         };
         let size = positive(rms_about_mean(|| signal.iter()));

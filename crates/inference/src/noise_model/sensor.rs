@@ -87,10 +87,12 @@ fn has_short_memory(discrepancy: &[f64]) -> bool {
         return false;
     };
     let told_ahead: f64 = rho.iter().skip(LAGS + 1).map(|rho| rho * rho).sum();
-    let filter = Whitening::of_noise(&[vec![discrepancy]], &[0.0], LAGS);
-    let mut new = discrepancy.to_vec();
-    filter.apply(0, &mut new);
-    told_ahead < NOISE_KNOWN - 1.0 && is_even(&new)
+    told_ahead < NOISE_KNOWN - 1.0 && {
+        let filter = Whitening::of_noise(&[vec![discrepancy]], &[0.0], LAGS);
+        let mut new = discrepancy.to_vec();
+        filter.apply(0, &mut new);
+        is_even(&new)
+    }
 }
 
 /// Whether a discrepancy is (1).
@@ -130,7 +132,7 @@ fn innovations(discrepancy: &[f64], [colour, white]: [f64; 2]) -> Vec<f64> {
     next.collect()
 }
 
-/// Whether values are white, and not a few jumps among small steps: neither is their mean known by fewer samples, nor are they told ahead by
+/// Whether values are white and [even](is_even): neither is their mean known by fewer samples, nor are they told ahead by
 /// the last few, of which the share Σ ρ_k² of their variance is told. Correlations of what rings add up to nothing.
 fn is_white(values: &[f64]) -> bool {
     let count = values.len() as f64;
@@ -143,6 +145,7 @@ fn is_white(values: &[f64]) -> bool {
     independent > WHITE * count && is_new && is_even(values)
 }
 
+/// Whether values are not a few jumps among small steps.
 fn is_even(values: &[f64]) -> bool {
     let count = values.len() as f64;
     let mean = values.iter().map(|w| w.abs()).sum::<f64>() / count;
